@@ -1,10 +1,10 @@
-//! Affine arithmetic: quantities over a small region, as linear functions of the position in it with a bound on the
+//! Affine arithmetic: quantities over a small region as linear functions of the position in it, with a bound of the
 //! rest.
 //!
-//! An interval knows only the range of a quantity, and forgets what the quantity depends on: over a pixel, the range of
-//! a formula's result is then many times too wide. An [`Affine`] number keeps the linear part, so that the uncertain
-//! rest shrinks with the square of the region's size. The mean over the region is known to within that rest alone,
-//! however steep the linear part is.
+//! An interval only knows the range of a quantity, not what the quantity depends on. Over a pixel, the range of a
+//! formula's result is then many times too wide. An [`Affine`] number keeps the linear part, and the uncertain rest
+//! shrinks with the square of the region's size. The error of the mean over the region is that rest alone, however
+//! steep the linear part is.
 
 mod functions;
 
@@ -15,23 +15,23 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// The number of variables.
 pub const VARIABLES: usize = 5;
 
-/// A quantity `centre + linear . e + rest`, where each variable in `e` lies anywhere from -1 to 1 and the rest anywhere
-/// from `-rest` to `rest`. All roundings are in the rest. An unbounded quantity has an infinite rest.
+/// A quantity `centre + linear . e + rest`. Each variable in `e` is in the range from -1 to 1, and the rest in the
+/// range from `-rest` to `rest`, which includes all roundings. An unbounded quantity has an infinite rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
-    /// The value where all variables and the rest are 0.
+    /// The value at 0 for all variables and the rest.
     pub centre: f64,
     /// The change with each variable.
     pub linear: [f64; VARIABLES],
-    /// A bound on the magnitude of the part that is not linear; at least 0.
+    /// A bound of the magnitude of the nonlinear part, at least 0.
     pub rest: f64,
 }
 
-/// A bound on the roundings of an operation, as a fraction of the sum of the magnitudes of its terms. A product of two
+/// A bound of the roundings of an operation, as a fraction of the sum of the magnitudes of its terms. A product of two
 /// numbers has about 20 terms, and each term takes part in at most 12 sums and one product.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A bound on the error of terms that underflow.
+/// A bound of the error of terms that underflow.
 const UNDERFLOW: f64 = 1e-300;
 
 impl Affine {
@@ -40,14 +40,14 @@ impl Affine {
 
     const ZERO: Self = Self { centre: 0.0, linear: [0.0; VARIABLES], rest: 0.0 };
 
-    /// Returns `centre + half * e`, where `e` is the variable of this index.
+    /// Returns `centre + half * e` for the variable `e` with this index.
     pub fn variable(index: usize, centre: f64, half: f64) -> Self {
         let mut linear = [0.0; VARIABLES];
         linear[index] = half;
         Self { centre, linear, rest: 0.0 }
     }
 
-    /// Makes a number from its parts, and adds the roundings of terms whose magnitudes add up to `size`.
+    /// Makes a number from its parts, and adds the roundings of terms with magnitudes that add up to `size`.
     #[inline]
     fn rounded(centre: f64, linear: [f64; VARIABLES], rest: f64, size: f64) -> Self {
         let rest = rest + (ROUNDING * size + UNDERFLOW);
@@ -59,7 +59,7 @@ impl Affine {
         }
     }
 
-    /// Returns a bound on the difference from the centre, rounded up.
+    /// Returns an upper bound of the difference from the centre.
     #[inline]
     pub fn radius(&self) -> f64 {
         (spread(&self.linear) + self.rest) * (1.0 + ROUNDING)
@@ -76,25 +76,25 @@ impl Affine {
         if self.is_thin() { Interval::point(self.centre) } else { around(self.centre, self.rest) }
     }
 
-    /// Returns the mean over the variable of this index, which does not depend on the others and has the mean 0.
+    /// Returns the mean over the variable with this index, which is independent of the others and has the mean 0.
     pub fn without(mut self, index: usize) -> Self {
         self.linear[index] = 0.0;
         self
     }
 
-    /// Moves the dependence on the variable of this index into the rest.
+    /// Moves the dependence on the variable with this index into the rest.
     pub fn absorbing(self, index: usize) -> Self {
         let rest = (self.rest + self.linear[index].abs()) * (1.0 + f64::EPSILON);
         Self { rest, ..self.without(index) }
     }
 
-    /// Tells whether the quantity is 0, for certain.
+    /// Tells whether the quantity is certainly 0.
     #[inline]
     fn is_nothing(&self) -> bool {
         self.centre == 0.0 && self.is_thin()
     }
 
-    /// Tells whether the quantity is one number.
+    /// Tells whether the quantity is a single number.
     #[inline]
     fn is_thin(&self) -> bool {
         self.rest == 0.0 && self.linear == [0.0; VARIABLES]
@@ -105,7 +105,7 @@ impl Affine {
         self.range().has_zero()
     }
 
-    /// Returns whether the quantity has bounds.
+    /// Returns whether the quantity is bounded.
     pub fn is_bounded(&self) -> bool {
         self.rest.is_finite()
     }
@@ -122,7 +122,7 @@ fn spread(linear: &[f64; VARIABLES]) -> f64 {
     linear.iter().map(|part| part.abs()).sum()
 }
 
-/// Encloses the numbers no farther than `radius` from a centre.
+/// Encloses the numbers within `radius` of a centre.
 #[inline]
 fn around(centre: f64, radius: f64) -> Interval {
     let slack = f64::EPSILON * (centre.abs() + radius);

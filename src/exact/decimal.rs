@@ -1,4 +1,4 @@
-//! Decimal numbers, as people write them.
+//! Decimal numbers in human notation.
 
 /// The reason why a word is not a finite number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,12 +9,12 @@ pub enum DecimalFault {
     TooLarge,
     /// The word means infinity or "not a number".
     NotFinite,
-    /// The word is not a number at all.
+    /// The word is not a number.
     NotANumber,
 }
 
 impl DecimalFault {
-    /// Says what the word is.
+    /// Describes the word, to follow a noun.
     pub fn what(self) -> &'static str {
         match self {
             Self::TooSmall => "too small",
@@ -24,7 +24,7 @@ impl DecimalFault {
         }
     }
 
-    /// Says what would be right, where that is known.
+    /// Returns a hint for a correction, if there is one.
     pub fn help(self) -> Option<&'static str> {
         let help = "numbers nearer to 0 than 5e-324 underflow to 0: write 0 if that is meant";
         (self == Self::TooSmall).then_some(help)
@@ -34,7 +34,7 @@ impl DecimalFault {
 /// Reads a finite number.
 ///
 /// # Errors
-/// The reason why the word is not one.
+/// Returns the reason why the word is not a finite number.
 #[inline]
 pub fn read(word: &str) -> Result<f64, DecimalFault> {
     match word.parse::<f64>() {
@@ -46,7 +46,7 @@ pub fn read(word: &str) -> Result<f64, DecimalFault> {
     }
 }
 
-/// Tells whether a word that is read as 0 stands for a number other than 0.
+/// Tells whether a word that is parsed as 0 stands for a nonzero number.
 fn underflows(word: &str) -> bool {
     let mut digits = word.bytes().take_while(|byte| !byte.eq_ignore_ascii_case(&b'e'));
     digits.any(|byte| matches!(byte, b'1'..=b'9'))

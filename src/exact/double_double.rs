@@ -1,6 +1,6 @@
 //! Error-free transformations and double-double arithmetic (Dekker 1971, Knuth; Joldes et al. 2017).
 //!
-//! Nothing here uses a fused multiply-add, so the bits are the same on every machine.
+//! Nothing here uses a fused multiply-add, which makes results the same bits on each machine.
 
 mod elementary;
 pub mod exact;
@@ -34,7 +34,7 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
 }
 
 /// Computes `start + distance * step - from` to one ulp of the result, however far `start` is from `from`. The
-/// difference is exact where it cancels, and rounded once where it does not.
+/// difference is exact if it cancels, and is otherwise rounded once.
 #[inline(always)]
 pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
     let (way, way_low) = two_product(distance, step);
@@ -42,8 +42,8 @@ pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
     (place - from) + (way_low + place_low)
 }
 
-/// Computes the dot product of `a` and `b + b_low`, plus `small`, where `b_low` holds the rounding errors of `b`. The
-/// result is rounded about once, and off by at most 2^-102 of the size of its terms however much of it cancels (Ogita,
+/// Computes the dot product of `a` and `b + b_low`, plus `small`. `b_low` holds the rounding errors of `b`. The result
+/// is rounded about once, with an error of at most 2^-102 of the size of its terms regardless of cancellation (Ogita,
 /// Rump and Oishi 2005).
 #[inline(always)]
 pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
@@ -56,7 +56,7 @@ pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
     sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + (of_low + small))
 }
 
-/// Returns the exponent of the power of two that scales a magnitude to between 1/2 and 1; 0 for 0.
+/// Returns the exponent of the power of two that scales a magnitude to between 1/2 and 1, or 0 for 0.
 #[inline]
 pub fn exponent_to_one(magnitude: f64) -> i32 {
     // Subnormal numbers are scaled like the smallest normal number.
@@ -64,32 +64,32 @@ pub fn exponent_to_one(magnitude: f64) -> i32 {
     if magnitude == 0.0 { 0 } else { 1022 - bits as i32 }
 }
 
-/// Returns a number times 2^`exponent`: exactly, unless the result is too small or too large for a normal number.
+/// Returns a number times 2^`exponent`, exactly unless the result is too small or too large for a normal number.
 #[inline]
 pub fn times_power_of_two(number: f64, exponent: i32) -> f64 {
     let half = exponent / 2;
     number * power_of_two(half) * power_of_two(exponent - half)
 }
 
-/// Returns a vector times the power of two that brings its largest component to between 1/2 and 1, so that squares neither
-/// overflow nor underflow. Components that are far smaller than the largest one may lose digits.
+/// Returns a vector times the power of two that scales its largest component to between 1/2 and 1, which keeps squares
+/// from overflow and underflow. Components that are far smaller than the largest one may lose digits.
 #[inline]
 pub fn scaled(vector: DVec3) -> DVec3 {
     let exponent = exponent_to_one(vector.abs().max_element());
     vector.map(|part| times_power_of_two(part, exponent))
 }
 
-/// Returns 2^`exponent`, which may be subnormal; infinity or 0 where that is too large or too small.
+/// Returns 2^`exponent`, which may be subnormal. Returns infinity or 0 for too large or too small exponents.
 #[inline]
 pub fn power_of_two(exponent: i32) -> f64 {
     let is_normal = (-1022..=1023).contains(&exponent);
     if is_normal { f64::from_bits(((exponent + 1023) as u64) << 52) } else { libm::ldexp(1.0, exponent) }
 }
 
-/// A double-double: the unevaluated sum of two numbers, of which the second is about 2^-53 of the first.
+/// A double-double: the unevaluated sum of two numbers. The second is at most about 2^-53 of the first.
 ///
-/// Holds for finite magnitudes below 1e290 whose products have magnitudes above 1e-290; outside that range, parts
-/// overflow or underflow.
+/// Magnitudes must be below 1e290, and those of products above 1e-290. Outside of that range, parts overflow or
+/// underflow.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
     // Numbers compare by the fields in this order.
@@ -114,7 +114,7 @@ impl DoubleDouble {
         Self { high, low }
     }
 
-    /// Returns the square root; 0 below 0.
+    /// Returns the square root, or 0 for a negative number.
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::from(0.0);

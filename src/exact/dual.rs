@@ -14,19 +14,19 @@ pub struct Dual<N = f64> {
 }
 
 impl<N: Scalar> Dual<N> {
-    /// Returns the variable itself, whose derivative is 1.
+    /// Returns the variable itself, with the derivative 1.
     #[inline(always)]
     pub fn variable(value: N) -> Self {
         Self { value, slope: N::constant(1.0) }
     }
 
-    /// Returns a number that does not depend on the variable, whose derivative is 0.
+    /// Returns a number that does not depend on the variable, with the derivative 0.
     #[inline(always)]
     pub fn fixed(value: N) -> Self {
         Self { value, slope: N::constant(0.0) }
     }
 
-    /// Applies the chain rule: returns a function of the number, given the function's value and derivative there.
+    /// Applies a function by the chain rule, given its value and its derivative at the number.
     #[inline(always)]
     fn chain(self, value: N, derivative: N) -> Self {
         Self { value, slope: derivative * self.slope }
@@ -125,7 +125,7 @@ impl<N: Scalar> Scalar for Dual<N> {
     fn atan2(self, x: Self) -> Self {
         let (one, other) = (x.value * self.slope, self.value * x.slope);
         let turns = (one - other) / (x.value.powi(2) + self.value.powi(2));
-        // The slope has no bounds where the angle jumps.
+        // The slope is unbounded where the angle jumps.
         Self { value: self.value.atan2(x.value), slope: turns + self.value.d_step() * (-x.value).step() }
     }
 
@@ -160,7 +160,7 @@ impl<N: Scalar> Scalar for Dual<N> {
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.pow(exponent.value);
         let by_base = exponent.value * self.value.pow(exponent.value - N::constant(1.0));
-        // The exponent is nearly always a constant; then the base may be 0 or negative.
+        // The exponent is nearly always a constant, and then the base may be 0 or negative.
         let by_exponent = if exponent.slope.is_zero() { N::constant(0.0) } else { value * self.value.ln() };
         Self { value, slope: by_base * self.slope + by_exponent * exponent.slope }
     }
@@ -189,8 +189,7 @@ impl<N: Scalar> Scalar for Dual<N> {
         Self { value: self.value.shifted(by), slope: self.slope }
     }
 
-    /// Differentiates the power as a whole: its derivatives may have bounds where the derivatives of its base have
-    /// none.
+    /// Differentiates the power as a whole. Its derivatives may be bounded where those of its base are not.
     #[inline(always)]
     fn ramp(self, exponent: i32) -> Self {
         let derivative = if exponent == 1 {

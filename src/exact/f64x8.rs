@@ -1,14 +1,14 @@
-//! Eight lanes of `f64`: formulas are evaluated for eight numbers at a time.
+//! Eight lanes of `f64`, for evaluating formulas for eight numbers at once.
 //!
-//! Each lane gets the bits that it would get alone. Sines and cosines equal those of the `libm` crate, and are computed
-//! for all eight lanes at once where that is possible.
+//! Each lane has the same bits as a single number. Sines and cosines equal those of the `libm` crate, and are computed
+//! for all eight lanes at once if possible.
 
 use crate::scalar::Scalar;
 use crate::sines::sines;
 use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The number of lanes that are evaluated at a time.
+/// The number of lanes that are evaluated at once.
 pub const LANES: usize = 8;
 
 /// Eight independent numbers, one per lane.
@@ -75,7 +75,7 @@ impl Neg for F64x8 {
 }
 
 impl Scalar for F64x8 {
-    /// Kernels inline them, to be compiled for their CPU level.
+    /// Kernels inline the functions, to compile them for their CPU level.
     const IS_LONG: bool = false;
 
     #[inline(always)]

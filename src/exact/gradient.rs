@@ -5,7 +5,7 @@ use crate::scalar::{Scalar, per_axis};
 use crate::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number with three derivatives. They have the bits that three [`Dual`] numbers would have, in one evaluation.
+/// A number with three derivatives, computed in one evaluation. They have the same bits as with three [`Dual`] numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gradient {
     /// The value.
@@ -31,7 +31,7 @@ impl Gradient {
         Self { value, slopes: per_axis(|axis| slope * self.slopes[axis]) }
     }
 
-    /// Makes a number of what a function returns for each axis.
+    /// Makes a number from the results of a function for each axis.
     #[inline(always)]
     fn of(function: impl Fn(usize) -> Dual) -> Self {
         let along = per_axis(function);

@@ -38,7 +38,7 @@ impl<N: Scalar> Jet<N> {
         Dual { value: self.value, slope: self.first }
     }
 
-    /// Returns the first derivative, which has the second as its own.
+    /// Returns the first derivative, with the second one as its derivative.
     #[inline(always)]
     fn slope(self) -> Dual<N> {
         Dual { value: self.first, slope: self.second }
@@ -49,7 +49,7 @@ impl<N: Scalar> Jet<N> {
         Self { value, first: slope.value, second: slope.slope }
     }
 
-    /// Applies the chain rule: returns a function of the number, given the function's value there, and its derivative.
+    /// Applies a function by the chain rule, given its value and its derivative at the number.
     #[inline(always)]
     fn chain(self, value: N, derivative: Dual<N>) -> Self {
         Self::of(value, derivative * self.slope())
@@ -197,7 +197,7 @@ impl<N: Scalar> Scalar for Jet<N> {
         let (base, power) = (self.dual(), exponent.dual());
         let value = base.pow(power);
         let by_base = power * base.pow(power - Dual::constant(1.0));
-        // The exponent is nearly always a constant; then the base may be 0 or negative.
+        // The exponent is nearly always a constant, and then the base may be 0 or negative.
         let is_constant = exponent.slope().is_zero();
         let by_exponent = if is_constant { Dual::constant(0.0) } else { value * base.ln() };
         Self::of(value.value, by_base * self.slope() + by_exponent * exponent.slope())
@@ -230,8 +230,7 @@ impl<N: Scalar> Scalar for Jet<N> {
         Self { value: self.value.shifted(by), ..self }
     }
 
-    /// Differentiates the power as a whole: its derivatives may have bounds where the derivatives of its base have
-    /// none.
+    /// Differentiates the power as a whole. Its derivatives may be bounded where those of its base are not.
     #[inline(always)]
     fn ramp(self, exponent: i32) -> Self {
         let derivative = if exponent == 1 {
@@ -280,7 +279,7 @@ mod tests {
     use crate::interval::Interval;
     use std::fmt::Debug;
 
-    /// Returns functions that use each operation, whose derivatives exist where x is above 0 and no integer.
+    /// Returns functions that use each operation, with derivatives where x is positive and not an integer.
     fn functions<N: Scalar>(x: N) -> [N; 6] {
         let n = N::constant;
         let spline = Spline::new(&[[0.0, 1.0], [0.5, 2.0], [2.0, 1.5], [3.0, -1.0]]);

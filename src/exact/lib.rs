@@ -1,7 +1,7 @@
-//! Number types for the evaluation of formulas, the formulas, and proven roots.
+//! Formulas, number types for their evaluation, and proven roots.
 //!
 //! The same formula can be evaluated with any [`Scalar`]: `f64`, an [`Interval`] that encloses all values, a [`Dual`]
-//! number or a [`Jet`] for derivatives, or [`Wide`] intervals whose endpoints have 237 bits.
+//! number or a [`Jet`] for derivatives, or [`Wide`] intervals with endpoints of 237 bits.
 //!
 //! ```
 //! use tabray_exact::{Dual, Formula, Interval};
@@ -15,7 +15,7 @@
 //! # Ok::<(), String>(())
 //! ```
 //!
-//! `cargo run -p tabray-exact --example bounds` proves where that formula is 0 first.
+//! `cargo run -p tabray-exact --example bounds` proves the first zero of that formula.
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
 
@@ -42,7 +42,7 @@ pub use interval::{Float, Interval, Wide};
 pub use jet::Jet;
 pub use scalar::Scalar;
 
-/// How properties are tested: cases that failed are kept below `tests/`.
+/// Returns the configuration of property tests. Failed cases are kept below `tests/`.
 #[cfg(test)]
 pub(crate) fn properties() -> proptest::prelude::ProptestConfig {
     use proptest::test_runner::{Config, FileFailurePersistence};

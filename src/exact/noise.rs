@@ -1,8 +1,8 @@
 //! Gradient noise: smooth random waves in space, about one unit long, the same on every machine.
 //!
-//! Space is cut into cubes of side 1. Each of their corners has a gradient, which a permutation of its coordinates chooses, and
-//! so a linear function that is 0 there; within a cube, the functions of its eight corners are blended. The noise repeats after
-//! 256 units.
+//! Space is divided into cubes of side 1. The gradient at each of their corners, chosen by a permutation of its
+//! coordinates, gives a linear function that is 0 there. Within a cube, the functions of its eight corners are blended.
+//! The noise repeats after 256 units.
 //!
 //! Source: K. Perlin, "Improving Noise" (SIGGRAPH 2002), with the permutation of its reference implementation.
 
@@ -25,21 +25,23 @@ const PERMUTATION: [u8; 256] = [
 /// A polynomial of one coordinate, by its coefficients.
 pub(crate) type Curve = [f64; 7];
 
-/// The weights of the two corners along an axis, by the coordinate in the cell, and these times the coordinate from the corner.
+/// The weights of the two corners along an axis, by the coordinate in the cell, and their products with the coordinate
+/// from the corner.
 const WEIGHTS: [Curve; 2] = [[1.0, 0.0, 0.0, -10.0, 15.0, -6.0, 0.0], [0.0, 0.0, 0.0, 10.0, -15.0, 6.0, 0.0]];
 const RISES: [Curve; 2] = [[0.0, 1.0, 0.0, 0.0, -10.0, 15.0, -6.0], [0.0, 0.0, 0.0, -10.0, 25.0, -21.0, 6.0]];
 
-/// Bounds on the sums of the magnitudes of the two weights, and of the two rises, and of their derivatives of orders up to 3.
-/// With a weight f of the second corner, which rises from 0 to 1, the weights are 1 - f and f, and the magnitudes of the rises
-/// (1 - f) t and f (1 - t), which are at most 1/2 together. Further, |f'| <= 15/8, |f''| < 5.8 and |f'''| <= 60; the derivatives
-/// of t f are f + t f', 2 f' + t f'' and 3 f'' + t f''', and likewise for the other rise with 1 - t for t.
+/// Bounds of the sums of the magnitudes of the two weights, and of the two rises, and of their derivatives of orders up
+/// to 3. Let f be the weight of the second corner, which rises from 0 to 1. The weights are 1 - f and f, and the
+/// magnitudes of the rises are (1 - f) t and f (1 - t), together at most 1/2. Further, |f'| <= 15/8, |f''| < 5.8 and
+/// |f'''| <= 60. The derivatives of t f are f + t f', 2 f' + t f'' and 3 f'' + t f''', and those of the other rise are
+/// the same with 1 - t for t.
 const MOST_WEIGHT: [f64; 4] = [1.0, 3.75, 11.6, 120.0];
 const MOST_RISE: [f64; 4] = [0.5, 2.875, 13.3, 94.8];
 
 /// Returns the gradient at a corner: two of its coordinates are 1 or -1, and one is 0.
 pub(crate) fn gradient(corner: [f64; 3]) -> [f64; 3] {
     let hash = |before: u8, along: f64| {
-        // The remainder is exact, however far the corner is.
+        // The remainder is exact at any distance.
         let place = along.rem_euclid(256.0) as u8;
         PERMUTATION[usize::from(before.wrapping_add(place))]
     };
@@ -57,7 +59,7 @@ pub(crate) fn gradient(corner: [f64; 3]) -> [f64; 3] {
     gradient
 }
 
-/// Returns the derivatives of an order of the weights of the two corners along an axis, and of their rises.
+/// Returns the derivatives, of an order, of the weights of the two corners along an axis, and of their rises.
 pub(crate) fn curves(order: u8) -> [[Curve; 2]; 2] {
     let mut all = [WEIGHTS, RISES];
     for curve in all.as_flattened_mut() {
@@ -71,7 +73,7 @@ pub(crate) fn curves(order: u8) -> [[Curve; 2]; 2] {
     all
 }
 
-/// Bounds the magnitude of the noise, or of its derivative of these orders; infinite where nothing bounds it.
+/// Bounds the magnitude of the noise, or of its derivative of these orders. The bound is infinite for orders above 3.
 pub(crate) fn most(orders: [u8; 3]) -> f64 {
     let most =
         |of: &[f64; 4], axis: usize| of.get(usize::from(orders[axis])).copied().unwrap_or(f64::INFINITY);
@@ -104,7 +106,7 @@ mod tests {
 
     #[test]
     fn noise_is_that_of_the_reference() {
-        // Perlin's reference as it is written, with the permutation twice in a row.
+        // This is Perlin's reference as written, with the permutation twice in a row.
         let p = |index: usize| usize::from(PERMUTATION[index & 255]);
         let grad = |hash: usize, x: f64, y: f64, z: f64| {
             let h = hash & 15;
@@ -144,7 +146,7 @@ mod tests {
             let at = [0.37, 1.71, 5.13].map(|factor| (f64::from(step) * factor).rem_euclid(613.0) - 306.0);
             assert!((noise(at) - reference(at)).abs() < 1e-13, "{at:?}");
         }
-        // A value that others publish.
+        // A published value.
         assert!((noise([314.0 / 100.0, 42.0, 7.0]) - 0.136_919_958_784).abs() < 1e-10);
     }
 

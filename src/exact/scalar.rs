@@ -1,8 +1,8 @@
-//! The number types that formulas are evaluated with: plain numbers here,
-//! [`Interval`](crate::interval::Interval)s and [`Dual`](crate::dual::Dual) numbers beside them.
+//! The number types for the evaluation of formulas: plain numbers here, [`Interval`](crate::interval::Interval)s and
+//! [`Dual`](crate::dual::Dual) numbers in their own modules.
 //!
-//! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
-//! those of the `libm` crate, whose results do not depend on the machine.
+//! One formula evaluated with different types gives values, derivatives and proven bounds. The functions are those of
+//! the `libm` crate, with results that do not depend on the machine.
 
 use crate::noise::{self, Curve};
 use crate::sines::sines;
@@ -10,8 +10,8 @@ use crate::spline::{Coefficient, Spline};
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Inlines an operation, or calls it where it is long, so that it is compiled once and not into every formula, which would
-/// take megabytes of code.
+/// Inlines an operation, or calls it if it is long. A long one is thus compiled once and not into each formula, which
+/// would take megabytes of code.
 macro_rules! apart_if {
     ($is_long:expr, $operation:expr) => {
         if $is_long { $crate::scalar::apart(move || $operation) } else { $operation }
@@ -26,25 +26,26 @@ pub(crate) fn apart<R>(operation: impl FnOnce() -> R) -> R {
     operation()
 }
 
-/// A number type that formulas are evaluated with.
+/// A number type for the evaluation of formulas.
 ///
-/// The square root of a number below 0 is 0, so that a profile such as `sqrt(9 - y^2)` has an end and not a gap in its
-/// domain; the logarithm and powers of numbers below 0 are not defined.
+/// The square root of a negative number is 0, and so a profile such as `sqrt(9 - y^2)` has an end and not a gap in its
+/// domain. The logarithm and powers of negative numbers are undefined.
 pub trait Scalar:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Whether derivatives of the numbers are computed in calls: those of numbers longer than an interval of `f64` take
-    /// hundreds of instructions.
+    /// Whether derivatives of the numbers are computed in calls. For numbers longer than an interval of `f64`, they
+    /// take hundreds of instructions.
     const IS_LONG: bool = size_of::<Self>() > size_of::<[f64; 2]>();
 
     /// Returns a constant.
     fn constant(value: f64) -> Self;
-    /// Returns a number that is known to within an error: an interval for types with bounds, else the number itself.
+    /// Returns a number that is known up to an error: an interval for types with bounds, and otherwise the number
+    /// itself.
     #[inline(always)]
     fn about(value: f64, _error: f64) -> Self {
         Self::constant(value)
     }
-    /// Returns bounds of the number: all numbers for types that do not know any.
+    /// Returns bounds of the number, which are infinite for types without bounds.
     #[inline(always)]
     fn bounds(self) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
@@ -70,14 +71,14 @@ pub trait Scalar:
     fn exp(self) -> Self;
     /// Returns the natural logarithm.
     fn ln(self) -> Self;
-    /// Returns the angle, in radians from -π to π, from the positive x axis to the point with this y and another number as x. It
-    /// jumps where y is 0 and x is below 0.
+    /// Returns the angle, in radians from -π to π, from the positive x axis to the point with this y and the given x.
+    /// The angle jumps at y = 0 and negative x.
     fn atan2(self, x: Self) -> Self;
-    /// Returns the square root; 0 below 0.
+    /// Returns the square root, or 0 for a negative number.
     fn sqrt(self) -> Self;
     /// Returns the absolute value.
     fn abs(self) -> Self;
-    /// Returns the greatest integer that is not greater than the number.
+    /// Returns the largest integer that is at most the number.
     fn floor(self) -> Self;
     /// Returns the smaller of two numbers.
     #[inline(always)]
@@ -104,22 +105,22 @@ pub trait Scalar:
         self + Self::constant(by)
     }
 
-    /// Returns a power, 1 or more, of the number where it is above 0, and 0 elsewhere.
+    /// Returns a power, 1 or more, of a positive number, and 0 for other numbers.
     #[inline(always)]
     fn ramp(self, exponent: i32) -> Self {
         self.max(Self::constant(0.0)).powi(exponent)
     }
 
-    /// Returns the value of a spline, or of its derivative of an order from 0.
+    /// Returns the value of a spline, or its derivative of an order from 0.
     fn spline(self, spline: &Spline, order: usize) -> Self;
 
     /// Returns the gradient noise (Perlin 2002) at a point, or its derivative of these orders along x, y and z.
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self;
 
-    /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
+    /// Returns the step function, 1 for positive and 0 for negative numbers, which is the derivative of `max(0, x)`.
     fn step(self) -> Self;
-    /// Returns one number where this one is 0 or above, and another one where it is below. What is not returned need not be
-    /// defined.
+    /// Returns `one` if this number is 0 or above, and `other` if it is negative. The number that is not returned may
+    /// be undefined.
     #[inline(always)]
     fn choose(self, one: Self, other: Self) -> Self {
         let [low, high] = self.bounds();
@@ -132,25 +133,24 @@ pub trait Scalar:
         }
     }
 
-    /// Returns the derivative of [`step`](Self::step): unbounded where the number may be 0, else 0.
+    /// Returns the derivative of [`step`](Self::step): unbounded if the number may be 0, and otherwise 0.
     fn d_step(self) -> Self;
-    /// Returns the derivative of [`floor`](Self::floor): unbounded where the number may be an integer, else 0.
+    /// Returns the derivative of [`floor`](Self::floor): unbounded if the number may be an integer, and otherwise 0.
     fn d_floor(self) -> Self;
-    /// Returns whether the number is exactly 0, with no other value possible.
+    /// Returns whether the number is exactly 0, with no other possible value.
     fn is_zero(self) -> bool;
 }
 
 /// Calls a function for axes 0, 1 and 2, and returns the three results.
 ///
-/// `map` of an array does the same, but it guards against panics half way, which costs compile time for each number
-/// type and gains nothing here.
+/// `map` of an array does the same, but guards against panics, which costs compile time for each number type and is
+/// useless here.
 #[inline(always)]
 pub fn per_axis<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]
 }
 
-/// Returns the value of a piece of a spline, or of its derivative of an order from 0, with coefficients as `number` takes
-/// them.
+/// Returns the value of a piece of a spline, or its derivative of an order from 0. `number` converts coefficients.
 #[inline]
 pub(crate) fn of_cubic<N: Scalar>(
     y: N,
@@ -164,13 +164,13 @@ pub(crate) fn of_cubic<N: Scalar>(
     ((c3 * t + c2) * t + c1) * t + c0
 }
 
-/// Returns a polynomial of one coordinate, by its coefficients.
+/// Returns the value of a polynomial of one coordinate, given its coefficients.
 fn curve<N: Scalar>(of: &Curve, t: N) -> N {
     of.iter().rev().skip(1).fold(N::constant(of[of.len() - 1]), |sum, term| (sum * t).shifted(*term))
 }
 
-/// Returns the noise, or its derivative of these orders, in the cell whose lowest corner is given, where `t` has the coordinates
-/// from that corner, from 0 to 1.
+/// Returns the noise, or its derivative of these orders, in the cell with this lowest corner. `t` has the coordinates
+/// relative to that corner, from 0 to 1.
 pub(crate) fn of_noise<N: Scalar>(corner: [f64; 3], t: [N; 3], orders: [u8; 3]) -> N {
     let along = |axis: usize| noise::curves(orders[axis]).map(|pair| pair.map(|of| curve(&of, t[axis])));
     let along = [along(0), along(1), along(2)];
@@ -179,7 +179,7 @@ pub(crate) fn of_noise<N: Scalar>(corner: [f64; 3], t: [N; 3], orders: [u8; 3]) 
         let at = [index & 1, index >> 1 & 1, index >> 2];
         let gradient = noise::gradient([0, 1, 2].map(|axis| corner[axis] + at[axis] as f64));
         for (axis, slope) in gradient.into_iter().enumerate().filter(|(_, slope)| *slope != 0.0) {
-            // The rise along this axis, and the weights along the others.
+            // The factors are the rise along this axis and the weights along the others.
             let factor = |of: usize| along[of][usize::from(of == axis)][at[of]];
             let product = factor(0) * factor(1) * factor(2);
             sum = if slope > 0.0 { sum + product } else { sum - product };
@@ -252,7 +252,7 @@ impl Scalar for f64 {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // Written so that a NaN stays a NaN.
+        // The comparison keeps a NaN.
         f64::sqrt(if self < 0.0 { 0.0 } else { self })
     }
 
@@ -280,10 +280,10 @@ impl Scalar for f64 {
         libm::pow(self, exponent)
     }
 
-    /// Computes the power by repeated squaring, which gives the same bits on every machine.
+    /// Computes the power by repeated squaring, which gives the same bits on each machine.
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        // The same bits.
+        // The result has the same bits.
         if exponent == 2 {
             return self * self;
         }

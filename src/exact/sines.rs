@@ -1,7 +1,7 @@
-//! Sines and cosines with the bits of the `libm` crate, in less time: of several angles at once, without branches for most of
-//! them. The reduction and the polynomials are those of FreeBSD's msun, from which that crate is ported.
+//! Sines and cosines with the bits of the `libm` crate, but faster: of several angles at once, without branches for
+//! most of them. The reduction and the polynomials are those of FreeBSD's msun, which that crate is ported from.
 
-/// Returns the sines and the cosines of some angles in radians: the same bits as those of `libm`, in less time.
+/// Returns the sines and the cosines of some angles in radians, with the same bits as `libm`, but faster.
 #[inline(always)]
 pub(crate) fn sines<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sin, mut cos) = ([0.0; N], [0.0; N]);
@@ -29,16 +29,16 @@ struct SinCos {
 }
 
 /// Computes the sine and the cosine of an angle in radians without branches. `needs_libm` is nonzero for large angles,
-/// for NaN, and for angles so near to where msun switches between formulas that it might use another one.
+/// for NaN, and for angles so close to a switch between msun's formulas that it might use another one.
 #[inline(always)]
 fn sin_cos(x: f64) -> SinCos {
-    /// Adding this rounds to an integer, which is left in the last bits.
+    /// Adding this rounds to an integer, in the last bits of the sum.
     const TO_WHOLE: f64 = 1.5 / f64::EPSILON;
     const INVERSE: f64 = std::f64::consts::FRAC_2_PI;
     /// The first 33 bits of π / 2, and the rest.
     const QUARTER: f64 = 1.570_796_326_734_125_6;
     const QUARTER_REST: f64 = 6.077_100_506_506_192e-11;
-    /// Bounds in radians: angles below the first are certainly below π / 4; the sine of an angle below the second is
+    /// Bounds in radians. Angles below the first are certainly below π / 4. The sine of an angle below the second is
     /// the angle itself.
     const REDUCED: f64 = 0.785;
     const TINY: f64 = 2e-8;
@@ -50,7 +50,7 @@ fn sin_cos(x: f64) -> SinCos {
     let high = turned - rest;
     let low = (turned - high) - rest;
     let size = high.abs();
-    // Where much of the angle cancels, more bits of π / 2 are needed.
+    // If much of the angle cancels, more bits of π / 2 are needed.
     let is_fine = (x.abs() < 1e5) & (size < REDUCED) & (size > TINY) & (size * 1000.0 > x.abs());
 
     let square = high * high;

@@ -1,4 +1,4 @@
-//! The functions of affine numbers: each by its tangent and a bound on its curvature, or by its range.
+//! Functions of affine numbers. Each uses its tangent and a bound of its curvature, or its range.
 
 use super::{Affine, spread};
 use crate::interval::Interval;
@@ -7,7 +7,7 @@ use crate::spline::Spline;
 use std::ops::Div;
 
 impl Affine {
-    /// Applies a function, given its value and its derivative at the centre, and its second derivative over the range.
+    /// Applies a function, given its value and derivative at the centre, and its second derivative over the range.
     #[inline]
     fn chain(&self, value: Interval, slope: Interval, bend: Interval) -> Self {
         let radius = Interval { low: 0.0, high: self.radius() };
@@ -32,18 +32,18 @@ impl Affine {
         self.chain(value, -(value * value), Interval::constant(2.0) / range.powi(3))
     }
 
-    /// Returns the number, or its range where the range bounds the mean more closely.
+    /// Returns the number, or its range if that bounds the mean more closely.
     fn or(self, range: Interval) -> Self {
         if 0.5 * range.width() < self.rest { range.into() } else { self }
     }
 
-    /// Applies a function of which only the range is known.
+    /// Applies a function by its range alone.
     fn by_range(self, function: impl FnOnce(Interval) -> Interval) -> Self {
         function(self.range()).into()
     }
 }
 
-/// Encloses a power by repeated squaring: many exponents of highlights are in the hundreds.
+/// Encloses a power by repeated squaring, because exponents of highlights are often in the hundreds.
 fn power(base: Interval, exponent: i32) -> Interval {
     if base.low < 0.0 || exponent < 8 {
         return base.powi(exponent);
@@ -107,7 +107,7 @@ impl Scalar for Affine {
 
     fn sqrt(self) -> Self {
         let range = self.range();
-        // Where the slope is no longer nearly the same, the line is a worse bound than the range.
+        // If the slope varies a lot, the line is a worse bound than the range.
         if range.low <= 0.0 || self.is_thin() {
             return self.by_range(Interval::sqrt);
         }

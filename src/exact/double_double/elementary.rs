@@ -1,11 +1,11 @@
-//! The functions of formulas in double-double arithmetic, by their series. They decide what `f64` leaves open, and
-//! compute the true hits for tests.
+//! The functions of formulas in double-double arithmetic, by their series. They decide cases that `f64` leaves
+//! undecided, and compute the true hits for tests.
 
 use super::{DoubleDouble, power_of_two, two_product};
 use crate::scalar::{Scalar, of_cubic, of_noise, per_axis};
 use crate::spline::Spline;
 
-/// π / 2 as an unevaluated sum; each part has the next 53 bits.
+/// π / 2 as an unevaluated sum. Each part has the next 53 bits.
 const HALF_PI: [f64; 4] = [
     std::f64::consts::FRAC_PI_2,
     6.123_233_995_736_766e-17,
@@ -13,14 +13,14 @@ const HALF_PI: [f64; 4] = [
     5.562_271_104_316_826e-50,
 ];
 
-/// ln 2 as an unevaluated sum; each part has the next 53 bits.
+/// ln 2 as an unevaluated sum. Each part has the next 53 bits.
 const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
 
 impl DoubleDouble {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
     const ONE: Self = Self { high: 1.0, low: 0.0 };
 
-    /// Returns whether the number is below 0.
+    /// Returns whether the number is negative.
     pub fn is_negative(self) -> bool {
         self < Self::ZERO
     }
@@ -31,7 +31,7 @@ impl DoubleDouble {
         Self { high: self.high * factor, low: self.low * factor }
     }
 
-    /// Returns the number less `times` a constant that is given as an unevaluated sum.
+    /// Returns the number minus `times` a constant, given as an unevaluated sum.
     fn without(self, times: f64, parts: &[f64]) -> Self {
         parts.iter().fold(self, |left, part| {
             let (high, low) = two_product(times, *part);
@@ -86,7 +86,7 @@ impl Scalar for DoubleDouble {
     }
 
     fn exp(self) -> Self {
-        // Below the first bound the result underflows to 0, above the second it overflows.
+        // The result underflows to 0 below the first bound, and overflows above the second.
         if self.high < -745.2 {
             return Self::ZERO;
         }
@@ -116,7 +116,7 @@ impl Scalar for DoubleDouble {
         if self.is_negative() {
             return f64::NAN.into();
         }
-        // With x = 2^n m, where m is around 1: ln m = 2 artanh((m - 1) / (m + 1)).
+        // For x = 2^n m with m around 1, ln m = 2 artanh((m - 1) / (m + 1)).
         let doublings = libm::log2(self.high).round();
         let m = self.scaled(-(doublings as i32));
         let ratio = (m - Self::ONE) / (m + Self::ONE);
@@ -129,8 +129,7 @@ impl Scalar for DoubleDouble {
         (ratio * series).scaled(1).without(-doublings, &LN_2)
     }
 
-    /// Turns the point back by its angle as `f64` knows it. The angle that is left is so small that it equals its
-    /// tangent.
+    /// Rotates the point back by its angle in `f64`. The remaining angle is so small that it equals its tangent.
     fn atan2(self, x: Self) -> Self {
         let angle = Self::from(libm::atan2(self.high, x.high));
         let (sin, cos) = angle.sin_cos();
@@ -179,7 +178,7 @@ impl Scalar for DoubleDouble {
     }
 
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
-        // A corner whose coordinates are too large for one `f64` is slightly off, and so is its cell.
+        // A corner with coordinates too large for one `f64` is slightly off, and so is its cell.
         let corner = at.map(|along| along.floor().high);
         of_noise(corner, per_axis(|axis| at[axis].shifted(-corner[axis])), orders)
     }

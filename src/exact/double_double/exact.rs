@@ -1,8 +1,8 @@
-//! Exact sums and products of `f64` numbers, as sums of as many parts as they need.
+//! Exact sums and products of `f64` numbers, as sums of any number of parts.
 
 use super::{DoubleDouble, two_product, two_sum};
 
-/// An exact number: an unevaluated sum of parts whose digits do not overlap, smallest first (Shewchuk 1997).
+/// An exact number: an unevaluated sum of parts with digits that do not overlap, smallest first (Shewchuk 1997).
 #[derive(Clone, Debug, Default)]
 pub struct Exact {
     parts: Vec<f64>,
@@ -35,7 +35,7 @@ impl Exact {
         &self.parts
     }
 
-    /// Returns the terms whose exact sum is the product with another number.
+    /// Returns the terms of the exact product with another number.
     pub fn times<'e>(&'e self, other: &'e Self) -> impl Iterator<Item = f64> + 'e {
         let pairs = self.parts.iter().flat_map(|one| other.parts.iter().map(move |other| (*one, *other)));
         pairs.flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
@@ -47,7 +47,7 @@ impl Exact {
     }
 }
 
-/// Returns a sum, rounded once to a double-double: 0 exactly where the sum is 0, however much of it cancels.
+/// Returns a sum, rounded once to a double-double. It is 0 only if the sum is exactly 0, regardless of cancellation.
 pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> DoubleDouble {
     Exact::sum(terms).rounded()
 }

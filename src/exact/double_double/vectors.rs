@@ -9,14 +9,14 @@ pub fn product(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> DoubleDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns the cross product of two vectors, each component rounded once however much of it cancels.
+/// Returns the cross product of two vectors. Each component is rounded once, regardless of cancellation.
 #[inline]
 pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     quick_cross(a, b).unwrap_or_else(|| exact_cross(a, b))
 }
 
-/// Returns the cross product of two vectors whose components are plain numbers, if each component is exactly a
-/// double-double, which is the common case; `None` otherwise.
+/// Returns the cross product of two vectors of plain numbers if each component is exactly a double-double, the common
+/// case, and otherwise `None`.
 #[inline]
 fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDouble; 3]> {
     let is_plain = |of: [DoubleDouble; 3]| (of[0].low == 0.0) & (of[1].low == 0.0) & (of[2].low == 0.0);
@@ -27,8 +27,8 @@ fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDoub
     (lost == 0.0).then_some(product)
 }
 
-/// Returns the cross product of two vectors, and the sum of the magnitudes of the errors of its components. Where that
-/// sum is 0, each component is exactly a double-double.
+/// Returns the cross product of two vectors, and the sum of the magnitudes of the errors of its components. If that sum
+/// is 0, each component is exactly a double-double.
 #[inline(always)]
 pub fn plain_cross(a: [f64; 3], b: [f64; 3]) -> ([DoubleDouble; 3], f64) {
     let part = |one: usize, other: usize| {
@@ -56,8 +56,8 @@ fn exact_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] 
     })
 }
 
-/// Returns the triple product of three vectors, rounded once: its sign tells their orientation, and it is 0 exactly
-/// where they are coplanar.
+/// Returns the triple product of three vectors, rounded once. Its sign gives their orientation, and it is 0 exactly if
+/// they are coplanar.
 pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [DoubleDouble; 3]) -> DoubleDouble {
     let parts = |of: DoubleDouble, with: DoubleDouble, factor: DoubleDouble| {
         let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
@@ -72,7 +72,7 @@ pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [DoubleDoub
     }))
 }
 
-/// Returns a vector scaled by a power of two so that its largest component is between 1/2 and 1.
+/// Returns a vector scaled by a power of two to a largest component between 1/2 and 1.
 #[inline]
 pub fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let exponent = exponent_to_one(vector.iter().fold(0.0, |largest, part| part.high.abs().max(largest)));
@@ -83,7 +83,7 @@ pub fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     [scaled(vector[0]), scaled(vector[1]), scaled(vector[2])]
 }
 
-/// Returns the unit vector along a vector whose components have magnitudes around 1.
+/// Returns the unit vector along a vector with components of magnitudes around 1.
 pub fn unit(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let length = product(vector, vector).sqrt();
     vector.map(|part| part / length)
@@ -96,8 +96,8 @@ pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
     let inverse = reciprocal(length);
     let rounded = |part: DoubleDouble| {
         let DoubleDouble { high, low } = part * inverse;
-        // The product and the inverse are off by a few 2^-104, and so is the quotient: where so little does not change
-        // how either is rounded, both are rounded to the same number.
+        // The errors of the product and of the inverse are a few 2^-104, and so is that of the quotient. If this error
+        // does not change the rounding of either, both are rounded to the same number.
         let error = power_of_two(-98) * high.abs();
         let is_certain = high + (low - error) == high && high + (low + error) == high;
         if is_certain && part.high.abs() > 1e-200 { high } else { (part / length).high }
@@ -105,7 +105,7 @@ pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
     [rounded(vector[0]), rounded(vector[1]), rounded(vector[2])]
 }
 
-/// Returns the reciprocal of a length, off by a few 2^-104 of it.
+/// Returns the reciprocal of a length, with a relative error of a few 2^-104.
 #[inline(always)]
 fn reciprocal(length: DoubleDouble) -> DoubleDouble {
     let first = 1.0 / length.high;

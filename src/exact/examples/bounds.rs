@@ -1,11 +1,11 @@
-//! Encloses a formula's values on an interval, and proves where it first is 0: `cargo run -p tabray-exact --example bounds`.
+//! Encloses a formula's values on an interval, and proves its first zero: `cargo run -p tabray-exact --example bounds`.
 
 use std::fmt::Write;
 use tabray_exact::roots::range::RayRange;
 use tabray_exact::roots::taylor::{self, FunctionOnLine};
 use tabray_exact::{Formula, Interval, Scalar};
 
-/// A formula in y along a line on which y is the distance.
+/// A formula in y along a line, with y as the distance.
 struct Along(Formula);
 
 impl FunctionOnLine for Along {
@@ -14,7 +14,7 @@ impl FunctionOnLine for Along {
     }
 }
 
-/// Says what is certain about a formula, and where it is 0 for the first time.
+/// Describes the bounds of a formula, and its first zero.
 pub fn answer() -> Result<String, Box<dyn std::error::Error>> {
     let mut out = String::new();
     let wave = Formula::parse("1.5 + sin(y) - y/4").map_err(|fault| fault.message)?;

@@ -1,5 +1,4 @@
-//! Formulas along lines, as polynomials. Operations work in place, because a polynomial is too long to be copied for
-//! each of them.
+//! Formulas along lines, as polynomials. Operations work in place, because copying a polynomial for each would be slow.
 
 use super::program::{MOST_REGISTERS, Program, Value, Values};
 use super::step::Step;
@@ -7,7 +6,7 @@ use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 
 impl Program {
-    /// Evaluates operations at a point that is a polynomial.
+    /// Evaluates operations at a point with polynomials as coordinates.
     pub(super) fn along<C: Coefficient, const N: usize>(
         &self,
         at: [Polynomial<C, N>; 3],
@@ -52,17 +51,17 @@ fn add<C: Coefficient, const N: usize>(
     }
 }
 
-/// Which powers are computed as products. The factors are powers of the same number that are already known, if there
-/// are any: `x^6` is the product of `x^4` and `x^2`.
+/// The powers to compute as products. The factors are known powers of the same number, if there are any: `x^6` is the
+/// product of `x^4` and `x^2`.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Products {
     /// All powers.
     All,
-    /// Even powers, as products of squares: bounds on such a product are as tight as bounds on the power.
+    /// Even powers, as products of squares. Bounds of such a product are as tight as bounds of the power.
     OfSquares,
 }
 
-/// Returns a program in which powers are products. `None` if it takes more registers than there are.
+/// Returns a program in which powers are products, or `None` if it needs too many registers.
 pub(super) fn by_products(steps: &[Step], variables: usize, which: Products) -> Option<Program> {
     let given = Values::new(steps, variables);
     let mut new = Powers { list: given.list[..variables].to_vec(), known: Vec::new() };
@@ -86,7 +85,7 @@ pub(super) fn by_products(steps: &[Step], variables: usize, which: Products) -> 
 
 struct Powers {
     list: Vec<Value>,
-    /// Powers that are already computed: the base, the exponent, and the value of the power.
+    /// The known powers: the base, the exponent, and the value of the power.
     known: Vec<(usize, u32, usize)>,
 }
 
@@ -96,7 +95,7 @@ impl Powers {
         self.list.len() - 1
     }
 
-    /// Returns the value that is the power of another one with an exponent of 1 or more.
+    /// Returns the value for a power of another one with an exponent of 1 or more.
     fn power(&mut self, of: usize, exponent: u32) -> usize {
         if exponent == 1 {
             return of;
@@ -116,7 +115,7 @@ impl Powers {
         product
     }
 
-    /// Returns the value that is the square of another one.
+    /// Returns the value for the square of another one.
     fn square(&mut self, of: usize) -> usize {
         self.find(of, 2).unwrap_or_else(|| {
             let square = self.push(Step::Powi(2), [of, 0, 0]);

@@ -1,8 +1,7 @@
 //! A formula in a box that is cut into cells. In each cell, only the operations that may matter there are carried out.
 //!
-//! Where a formula takes the smallest of many distances, intervals show that most of the distances cannot be the
-//! smallest in a small cell. Each cell has a program without those distances, made from the program of the larger cell
-//! of which it is a half.
+//! If a formula takes the minimum of many distances, intervals exclude most of them in a small cell. Each cell has a
+//! program without these distances, made from the program of the larger cell that it is a half of.
 //!
 //! Source: M. J. Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces" (2020), which shortens
 //! tapes for the tiles of an image.
@@ -12,21 +11,21 @@ use super::step::{Function, Step};
 use crate::interval::Interval;
 use std::sync::{Arc, OnceLock};
 
-/// A cell with this many operations or fewer is not cut: more cells would take longer to walk through.
+/// A cell with at most this many operations is not cut, because walking through more cells would take longer.
 const FEW: usize = 32;
 
-/// The maximum number of times that the box is halved: ten times along each axis.
+/// The maximum number of halvings of the box: ten along each axis.
 const HALVINGS: u32 = 30;
 
-/// The number of halvings, three along each axis, after which a cell is not cut again if they have left out too few
+/// The number of halvings, three along each axis, after which a cell is not cut again if they have excluded too few
 /// operations for a shorter program.
 const IN_VAIN: u32 = 9;
 
-/// The margin around a cell on all sides, as a fraction of the box. Places on the sides of a cell belong to it, however
-/// they are rounded.
+/// The margin around a cell on all sides, as a fraction of the box. With it, places on the sides of a cell belong to
+/// the cell regardless of rounding.
 pub const MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
-/// A formula's cells. A cell is cut when it is first asked for a place in it. How it is cut does not depend on the place.
+/// A formula's cells. A cell is cut on the first query of a place in it. The cut does not depend on the place.
 #[derive(Clone, Debug)]
 pub struct Cells {
     /// The whole box, with its margin.
@@ -39,31 +38,31 @@ pub struct Cells {
 struct Cell {
     place: [Interval; 3],
     program: Arc<Program>,
-    /// Whether the formula is nowhere 0 in the cell.
+    /// Whether the formula has no zero in the cell.
     is_free: bool,
     cut: Option<Cut>,
 }
 
-/// Where a cell is cut, and its halves.
+/// The cut of a cell, and its halves.
 #[derive(Clone, Debug)]
 struct Cut {
     axis: usize,
     at: f64,
-    /// The numbers of halvings that make a half, and of those since the program of the cell was made.
+    /// The number of halvings for a half, and how many of them came after the program of the cell was made.
     halvings: u32,
     in_vain: u32,
     halves: OnceLock<Box<[Cell; 2]>>,
 }
 
 impl PartialEq for Cells {
-    /// Tells whether both are the cells of one formula in one box, however many of them have been made.
+    /// Tells whether both are the cells of the same formula in the same box, regardless of how many have been made.
     fn eq(&self, other: &Self) -> bool {
         self.whole == other.whole && self.first.program == other.first.program
     }
 }
 
 impl Cells {
-    /// Cuts a box, if that may make a formula shorter there.
+    /// Cuts a box, if this may shorten a formula there.
     pub(super) fn new(program: &Program, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
         let place = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         let margin = place.map(|side| MARGIN * side.width());
@@ -71,18 +70,18 @@ impl Cells {
         first.cut.is_some().then(|| Self { whole: widened(place, margin), margin, first })
     }
 
-    /// Tells whether the formula is certainly nowhere 0 around some points.
+    /// Tells whether the formula certainly has no zero in a box.
     pub fn are_free(&self, at: [Interval; 3]) -> bool {
         self.cell(at).is_some_and(|cell| cell.is_free)
     }
 
-    /// Returns the shortest program for some points; `None` where they may lie outside of the box.
+    /// Returns the shortest program for a box, or `None` if the box is not inside the whole box.
     #[inline]
     pub(super) fn program(&self, at: [Interval; 3]) -> Option<&Program> {
         self.cell(at).map(|cell| &*cell.program)
     }
 
-    /// Returns the smallest cell around some points; `None` where they may lie outside of the box.
+    /// Returns the smallest cell around a box, or `None` if the box is not inside the whole box.
     #[inline]
     fn cell(&self, at: [Interval; 3]) -> Option<&Cell> {
         let is_inside =
@@ -103,8 +102,8 @@ impl Cells {
         Some(cell)
     }
 
-    /// Calls a function with the part of a line, from one place to another, in each cell where the formula may be 0, in
-    /// order along the line, until the function returns something. The line is the points `base + t dir`.
+    /// Calls a function with the part of a line between two places in each cell that may have zeros, in order along the
+    /// line, until the function returns a value. The line is the points `base + t dir`.
     pub fn visit<R>(
         &self,
         base: [f64; 3],
@@ -129,7 +128,7 @@ impl Cells {
         let (base, dir) = (line.0[axis], line.1[axis]);
         let cut = (place - base) / dir;
         let halves = if dir > 0.0 { [below, above] } else { [above, below] };
-        // A line in the plane of the cut gives a NaN, which both comparisons treat as no cut.
+        // A line in the plane of the cut gives a NaN, and both comparisons are false.
         if cut > low && cut < high {
             let found = self.visit_cell(halves[0], line, (low, cut), visit);
             return found.or_else(|| self.visit_cell(halves[1], line, (cut, high), visit));
@@ -140,7 +139,7 @@ impl Cells {
 }
 
 impl Cell {
-    /// Makes a cell of a part of a cell with this program, after these numbers of halvings.
+    /// Makes a cell of a part of a larger cell with this program, after these numbers of halvings.
     fn new(
         above: &Arc<Program>,
         place: [Interval; 3],
@@ -155,8 +154,8 @@ impl Cell {
         let is_cut = !is_free && halvings < HALVINGS && in_vain < IN_VAIN && len > FEW && has_choice();
         let shorter = (is_shorter || !is_cut && len < known)
             .then(|| Program::of(&values, 3))
-            // A shared value waits in a register. The program without some operations may need more registers than the
-            // long one.
+            // A shared value occupies a register. The program without some operations may thus need more registers than
+            // the long one.
             .filter(|program| program.registers <= MOST_REGISTERS);
         let cut = is_cut.then(|| {
             let width = |axis: usize| place[axis].width();
@@ -168,8 +167,8 @@ impl Cell {
         Self { place, program: shorter.map_or_else(|| above.clone(), Arc::new), is_free, cut }
     }
 
-    /// Returns the axis and the place where the cell is cut, and its halves, which are made when they are first asked for;
-    /// `None` where it is not cut.
+    /// Returns the axis and the place of the cut, and the cell's halves, which are made on first use. Returns `None` if
+    /// the cell is not cut.
     fn halves(&self, margin: [f64; 3]) -> Option<(usize, f64, &[Self; 2])> {
         let &Cut { axis, at, halvings, in_vain, ref halves } = self.cut.as_ref()?;
         let made = || {
@@ -187,18 +186,18 @@ fn widened(place: [Interval; 3], margin: [f64; 3]) -> [Interval; 3] {
         .map(|axis| Interval { low: place[axis].low - margin[axis], high: place[axis].high + margin[axis] })
 }
 
-/// Tells whether an operation may choose among several, depending on the place.
+/// Tells whether an operation may choose one of several operands, depending on the place.
 pub(super) fn is_choice(step: Step) -> bool {
     use Function::{Abs, Floor, Heaviside, If, Max, Min, Smax, Smin};
     matches!(step, Step::Call(Min | Max | Abs | Floor | Heaviside | If | Smin | Smax))
 }
 
-/// Returns the values of a formula that matter in a box, and bounds on the formula there.
+/// Returns the values of a formula that matter in a box, and bounds of the formula there.
 fn pruned(program: &Program, place: [Interval; 3]) -> (Values, Interval) {
     let values = program.values(3);
     let list = &values.list;
     let mut bounds: Vec<Interval> = Vec::with_capacity(list.len());
-    // For each value, the value that it equals in the box, and its operation.
+    // For each value, the equal value in the box, and its operation.
     let (mut same, mut steps) = (Vec::with_capacity(list.len()), Vec::with_capacity(list.len()));
     for (index, value) in list.iter().enumerate() {
         // Variables, which come first, and numbers have no operands.
@@ -218,7 +217,7 @@ fn pruned(program: &Program, place: [Interval; 3]) -> (Values, Interval) {
             Step::Call(Function::Min) if b.high <= a.low => own = second,
             Step::Call(Function::Max) if a.high <= b.low => own = second,
             Step::Call(Function::Max) if b.high <= a.low => own = first,
-            // Beyond the width, nothing is rounded.
+            // Beyond the width, a smooth minimum or maximum is exact.
             Step::Call(of @ (Function::Smin | Function::Smax)) if bounds[third].low > 0.0 => {
                 let (width, is_min) = (bounds[third].high, of == Function::Smin);
                 if (b - a).low >= width {
@@ -244,7 +243,7 @@ fn pruned(program: &Program, place: [Interval; 3]) -> (Values, Interval) {
     }
     let result = same[values.result];
     let value = bounds[result];
-    // The values from which the result is computed, in order.
+    // The values that the result depends on, in order.
     let mut is_used = vec![false; list.len()];
     is_used[..3].fill(true);
     is_used[result] = true;
@@ -274,7 +273,7 @@ mod tests {
     use crate::scalar::Scalar;
     use std::sync::Arc;
 
-    /// Returns 125 balls on a grid, as their distances, which a function combines.
+    /// Returns the distances of 125 balls on a grid, combined by a function.
     fn balls(combined: impl Fn(String) -> String) -> Field {
         let place = |index: i32| 0.4 * f64::from(index) - 0.8;
         let ball = |index: i32| {

@@ -1,4 +1,4 @@
-//! Where a formula in x, y and z is defined, and where it jumps.
+//! The domain of a formula in x, y and z, and its jumps.
 
 use super::Formula;
 use super::field::Field;
@@ -14,14 +14,15 @@ use std::sync::Arc;
 const MOST_JUMPS: u32 = 4;
 
 impl Field {
-    /// Returns a formula that is below 0 where this one is not defined: where a square root, a logarithm or the base of a power
-    /// with a fraction is below 0. `None` where it is defined in the whole box of these corners.
+    /// Returns a formula that is negative where this one is undefined: where the operand of a square root or a
+    /// logarithm, or the base of a power with a fractional exponent, is negative. Returns `None` if this one is defined
+    /// in the whole box with these corners.
     pub fn domain(&self, corners: [[f64; 3]; 2]) -> Option<Self> {
         let [low, high] = corners;
         let within = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         let steps = &self.formula().steps;
         let mut starts: Vec<usize> = Vec::new();
-        // The operands that must not be below 0, each with the index of the operation that requires it.
+        // The operands that must not be negative, each with the index of the operation that requires this.
         let (mut conditions, mut of_all): (Vec<(usize, Vec<Step>)>, Vec<Step>) = (Vec::new(), Vec::new());
         for (index, step) in steps.iter().enumerate() {
             // The place where the operation's operands start, and the place where the first of them ends.
@@ -33,7 +34,7 @@ impl Field {
                 Step::Call(Function::Sqrt | Function::Ln | Function::Pow) => {
                     conditions.push((index, steps[first..end].to_vec()));
                 }
-                // An operand that is not chosen need not be defined.
+                // An operand that is not chosen may be undefined.
                 Step::Call(Function::If) => {
                     for (at, condition) in conditions.iter_mut().filter(|(at, _)| *at >= end) {
                         let fulfilled = vec![Step::Number(1.0)];
@@ -48,7 +49,7 @@ impl Field {
         }
         let conditions: Vec<_> = conditions.into_iter().map(|(_, condition)| condition).collect();
         for (index, condition) in conditions.iter().enumerate() {
-            // An operand that cannot be below 0 may still be below 0 after rounding.
+            // An operand that cannot be negative may be negative after rounding.
             let may_be_below = self.with(condition.to_vec()).at(within).low < -f64::MIN_POSITIVE;
             if !may_be_below || conditions[..index].contains(condition) {
                 continue;
@@ -68,7 +69,7 @@ impl Field {
         Self::new(Arc::new(formula)).unwrap_or_else(|| self.clone())
     }
 
-    /// Tells whether the formula jumps or has a pole in a box, and is certainly not 0 on any side of it there.
+    /// Tells whether the formula has jumps or poles in a box, and is certainly nonzero on all of their sides there.
     pub fn jumps_past_0<F: Float>(&self, at: [Interval<F>; 3]) -> bool {
         if !self.program().instructions.iter().any(|instruction| may_jump(instruction.step)) {
             return false;
@@ -81,8 +82,8 @@ impl Field {
         (1..1 << jumps).all(|sides| !self.beside(at, sides, &mut 0).has_zero())
     }
 
-    /// Encloses the formula on one side of each jump and pole in a box: above it where its bit of `sides` is set, and
-    /// below it otherwise. Counts the jumps and poles. An operation that jumps more than once counts as too many.
+    /// Encloses the formula on one side of each jump and pole in a box: above it if its bit of `sides` is set, and
+    /// otherwise below it. Counts the jumps and poles. An operation that jumps more than once counts as too many.
     fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Interval<F> {
         let program = self.program();
         let mut registers = [at[0]; MOST_REGISTERS];
@@ -102,7 +103,7 @@ impl Field {
                     value = if is_above { b } else { c() };
                     *jumps += 1;
                 }
-                // Logarithms and powers are not defined below 0.
+                // Logarithms and powers are undefined for negative numbers.
                 Step::Call(Function::Ln | Function::Pow) if a.low < zero && a.high >= zero => {
                     let end = Interval::point(a.high);
                     value = match step {

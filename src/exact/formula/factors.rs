@@ -7,7 +7,7 @@ use super::step::{Function, Step};
 use crate::text;
 use std::sync::Arc;
 
-/// The starts and the directions of lines of few digits, in general position.
+/// The starts and directions of lines with short coordinates, in general position.
 const LINES: [[[f64; 3]; 2]; 3] = [
     [[0.3125, -0.71875, 0.453125], [0.59375, 0.8125, -0.40625]],
     [[-0.859375, 0.15625, 0.6875], [0.78125, -0.34375, 0.90625]],
@@ -15,8 +15,8 @@ const LINES: [[[f64; 3]; 2]; 3] = [
 ];
 
 impl Field {
-    /// Returns the formula with each of its factors to the first power, and the text of the factors whose powers were
-    /// left out; `None` if all factors have the power 1. The new formula is 0 where the old one is 0.
+    /// Returns the formula with each of its factors to the first power, and the text of the factors that had higher
+    /// powers. Returns `None` if all factors have the power 1. Both formulas have the same zeros.
     pub fn without_powers(&self) -> Option<(Self, Vec<String>)> {
         let mut factors = Factors::default();
         let sign = factors.add(&self.formula().steps, 1);
@@ -39,14 +39,15 @@ impl Field {
         Some((Self::new(Arc::new(formula))?, names))
     }
 
-    /// Tells whether the formula is a polynomial whose degree is within the limit for polynomials along a line.
+    /// Tells whether the formula is a polynomial, with a degree within the limit for polynomials along a line.
     pub fn is_polynomial(&self) -> bool {
         let [origin, dir] = LINES[0].map(|of| of.map(Rational::from));
         self.exactly_along(&origin, &dir).is_some()
     }
 
-    /// Tells whether the formula is a polynomial with a repeated factor. The answer comes from three lines. They meet
-    /// every factor, unless all three meet one in unusually few places, as fewer than one line in a million does.
+    /// Tells whether the formula is a polynomial with a repeated factor, by three lines. They detect each factor,
+    /// except in the rare case that all three meet a factor in unusually few places. Fewer than one line in a million
+    /// does so.
     pub fn has_repeated_factor(&self) -> bool {
         LINES.iter().all(|[origin, dir]| {
             let along = self.exactly_along(&origin.map(Rational::from), &dir.map(Rational::from));
@@ -55,19 +56,19 @@ impl Field {
     }
 }
 
-/// The factors of a product, each once, with its power.
+/// The distinct factors of a product, with their powers.
 #[derive(Default)]
 struct Factors<'s> {
     powers: Vec<(&'s [Step], u32)>,
 }
 
 impl<'s> Factors<'s> {
-    /// Adds the factors of a power of a product. Returns the sign of the constants among them.
+    /// Adds the factors of a power of a product. Returns the sign of the constant factors.
     fn add(&mut self, of: &'s [Step], power: u32) -> f64 {
         let Some((last, operands)) = of.split_last() else { return 1.0 };
         if !has_variable(of) {
             let value: f64 = Formula::new(String::new(), &[], of.to_vec()).at(0.0);
-            // A power of 0 is a factor like any other.
+            // A constant factor of 0 counts like any other factor.
             if value != 0.0 && value.is_finite() {
                 return if value < 0.0 && !power.is_multiple_of(2) { -1.0 } else { 1.0 };
             }
@@ -100,7 +101,7 @@ fn has_variable(steps: &[Step]) -> bool {
     steps.iter().any(|step| matches!(step, Step::Variable(_)))
 }
 
-/// Returns where the operations of the last operand start.
+/// Returns the start of the last operand's operations.
 pub(super) fn start_of_last(steps: &[Step]) -> usize {
     let (mut at, mut missing) = (steps.len(), 1);
     while missing > 0 && at > 0 {
@@ -112,7 +113,7 @@ pub(super) fn start_of_last(steps: &[Step]) -> usize {
 
 /// Returns the text of a formula in x, y and z.
 fn written(steps: &[Step]) -> String {
-    /// How tightly the last operation of a text binds: sums 0, products 1, signs 2, powers 3, values 4.
+    /// A text, and the precedence of its last operation: sums 0, products 1, signs 2, powers 3, values 4.
     type Part = (String, u8);
     fn within((text, binds): Part, least: u8) -> String {
         if binds < least { format!("({text})") } else { text }

@@ -1,4 +1,4 @@
-//! Formulas in x, y and z, or in everything that is known about a point of a surface.
+//! Formulas in x, y and z, or in all known quantities at a point of a surface.
 
 use super::along::{Products, by_products};
 use super::cells::{Cells, is_choice};
@@ -11,11 +11,11 @@ use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 use std::sync::Arc;
 
-/// The number of registers that suffices for most formulas of space, in values. Setting up [`MOST_REGISTERS`] takes
-/// longer than evaluating most formulas.
+/// The number of registers that is enough for most formulas of space. Setting up [`MOST_REGISTERS`] takes longer than
+/// evaluating most formulas.
 const SOME_REGISTERS: usize = 12;
 
-/// The number of registers, in values, that suffices for most formulas of a surface, which have more variables.
+/// The number of registers that is enough for most formulas of a surface, which have more variables.
 const MORE_REGISTERS: usize = 15;
 
 /// A formula in x, y and z: `x^2 + y^2 + z^2 - 1`.
@@ -39,7 +39,7 @@ pub struct FieldOf<const N: usize> {
     quick: Formula,
     /// The operations with products for powers, for polynomials along lines.
     products: Option<Program>,
-    /// The cells of a box, each with a program of its own.
+    /// The cells of a box, each with its own program.
     cells: Option<Arc<Cells>>,
 }
 
@@ -52,7 +52,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         _ => SURFACE,
     };
 
-    /// Makes a field of a formula; `None` if the formula has other variables.
+    /// Makes a field from a formula, or returns `None` if the formula has other variables.
     pub fn new(formula: Arc<Formula>) -> Option<Self> {
         if formula.variables() != Self::VARIABLES {
             return None;
@@ -72,7 +72,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         Some(Self { formula, quick, products, cells: None })
     }
 
-    /// Tells whether the formula uses the variable of this index.
+    /// Tells whether the formula uses the variable with this index.
     pub fn uses(&self, index: usize) -> bool {
         self.quick.steps.contains(&Step::Variable(index as u8))
     }
@@ -126,11 +126,11 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     }
 }
 
-/// The least number of operations for which a formula is cut into cells.
+/// The minimum number of operations for cutting a formula into cells.
 const MANY: usize = 64;
 
 impl Field {
-    /// Returns the same formula, with cells in a box if it takes the smallest or the largest of many numbers.
+    /// Returns the same formula, with cells in a box if it chooses among many numbers, for example by their minimum.
     pub fn within(self, corners: [[f64; 3]; 2]) -> Self {
         let steps = &self.quick.steps;
         let is_cut = self.program().instructions.len() >= MANY && steps.iter().any(|step| is_choice(*step));
@@ -138,12 +138,13 @@ impl Field {
         Self { cells: cells.map(Arc::new), ..self }
     }
 
-    /// Returns the cells, if there are any.
+    /// Returns the cells, if any.
     pub fn cells(&self) -> Option<&Cells> {
         self.cells.as_deref()
     }
 
-    /// Returns the estimated number of arithmetic operations per evaluation at some points, as [`Formula::cost`] does.
+    /// Returns the estimated number of arithmetic operations per evaluation at a point or in a box, like
+    /// [`Formula::cost`].
     pub fn cost<N: Scalar>(&self, at: [N; 3]) -> u64 {
         let cell = self.cells().and_then(|cells| cells.program(bounds_of(at)));
         cell.unwrap_or(self.program()).instructions.iter().map(|of| of.step.cost()).sum()
@@ -153,7 +154,7 @@ impl Field {
 /// A square root that is 0 for a negative number.
 const ROOT: [Step; 3] = [Step::Number(0.0), Step::Call(Function::Max), Step::Call(Function::Sqrt)];
 
-/// Returns the same operations, with square roots that are 0 for negative numbers.
+/// Returns the operations with each square root replaced by one that is 0 for negative numbers.
 fn with_roots(steps: &[Step]) -> Vec<Step> {
     let mut out = Vec::with_capacity(steps.len());
     for step in steps {
@@ -165,8 +166,8 @@ fn with_roots(steps: &[Step]) -> Vec<Step> {
     out
 }
 
-/// Returns the same operations, simplified: an operation with a constant takes one step and no derivatives of the
-/// constant, and a product of two equal values is a square.
+/// Returns the simplified operations: an operation with a constant takes one step and no derivatives of the constant,
+/// and a product of two equal values is a square.
 fn with_constants(steps: &[Step]) -> Vec<Step> {
     let (mut out, mut starts) = (Vec::with_capacity(steps.len()), Vec::new());
     for step in steps {
@@ -176,7 +177,7 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
                 let second = starts.pop().unwrap_or(0);
                 let first = starts.last().copied().unwrap_or(0);
                 let last = out.len() - 1;
-                // The bounds on a square are not below 0.
+                // The bounds of a square are not negative.
                 if *step == Step::Mul && out[first..second] == out[second..] {
                     out.truncate(second);
                     out.push(Step::Powi(2));
@@ -221,13 +222,13 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
 }
 
 impl Field {
-    /// Evaluates the formula at a point that is a polynomial.
+    /// Evaluates the formula at a point with polynomials as coordinates.
     pub fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
         self.by_products().along(at)
     }
 }
 
-/// Returns the box of a point.
+/// Returns the bounds of a point's coordinates.
 #[inline(always)]
 fn bounds_of<N: Scalar>(at: [N; 3]) -> [Interval; 3] {
     at.map(|place| {

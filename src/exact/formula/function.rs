@@ -1,27 +1,27 @@
-//! The functions that a formula can call. Number types compute some of them; the others are formulas made of those.
+//! The functions that a formula can call. Number types compute some of them, and the others are formulas of those.
 
 use super::step::Function;
 
 /// A function of formulas.
 pub(super) struct FormulaFunction {
     pub name: &'static str,
-    /// The names of its arguments.
+    /// The names of the arguments.
     pub arguments: &'static [&'static str],
     pub meaning: Meaning,
 }
 
-/// What a function computes.
+/// The meaning of a function.
 #[derive(Clone, Copy)]
 pub(super) enum Meaning {
-    /// An operation on one value, or on two. The latter may be applied to further values, one after the other.
+    /// An operation on one value or on two. An operation on two may be applied to further values, one after the other.
     Operation(Function),
     /// An operation on two values and a width. It may be applied to further values, one after the other.
     Smooth(Function),
-    /// An operation on exactly as many values as it names.
+    /// An operation on exactly as many values as it has arguments.
     Fixed(Function),
-    /// A comparison, and the values where it holds and where it does not.
+    /// A comparison, and the values if it is true and if it is false.
     Choice,
-    /// A formula in its arguments, given by this text.
+    /// A formula in the arguments, given by this text.
     Formula(&'static str),
 }
 
@@ -92,13 +92,13 @@ pub(super) fn find(name: &str) -> Option<&'static FormulaFunction> {
 }
 
 impl FormulaFunction {
-    /// Tells whether the function takes more arguments than it names, as the smallest of many does.
+    /// Tells whether the function takes further arguments, like a minimum.
     pub fn takes_more(&self) -> bool {
         matches!(self.meaning, Operation(Function::Min | Function::Max) | Smooth(_))
     }
 
-    /// Tells whether the name is reserved, so that no number of a scene can have it. Names of functions that were added
-    /// later are not reserved.
+    /// Tells whether the name is reserved: no number of a scene can have it. Names of functions that were added later
+    /// are not reserved.
     pub fn is_reserved(&self) -> bool {
         matches!(self.meaning, Operation(_))
     }

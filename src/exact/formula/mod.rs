@@ -1,4 +1,4 @@
-//! Formulas as a scene or a profile plugin writes them: in y, such as `2 + sin(y)`, or in x, y and z.
+//! Formulas of scenes and profile plugins: in y, such as `2 + sin(y)`, or in x, y and z.
 
 mod along;
 pub mod cells;
@@ -45,18 +45,17 @@ pub struct Formula {
     program: Program,
     /// The curve that [`Step::Spline`] evaluates.
     spline: Option<Arc<Spline>>,
-    /// Whether the formula can be evaluated for eight y at a time.
+    /// Whether the formula can be evaluated for eight y at once.
     is_plain: bool,
 }
 
-/// The number of registers that suffices for most formulas, in values.
+/// The number of registers that is enough for most formulas.
 const FEW_REGISTERS: usize = 6;
 
 impl OwnFunction {
-    /// Parses a function of these arguments.
+    /// Parses a function with these arguments.
     ///
-    /// # Errors
-    /// Returns the first place where the text is not a formula of these arguments.
+    /// # Errors Returns the first place where the text is not a formula in these arguments.
     pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
         let value = |steps: &[Step]| Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
         let Operations { steps, pieces, .. } = parser::parse(text, arguments, named, value)?;
@@ -82,8 +81,8 @@ impl Formula {
     }
 
     /// Parses a formula in these variables that may use named numbers and functions of the scene. The text of the new
-    /// formula stands on one line. It contains the numbers instead of their names, and the formulas of functions
-    /// instead of calls.
+    /// formula is a single line. It contains the numbers in place of their names, and the formulas of functions in
+    /// place of calls.
     ///
     /// # Errors
     /// Returns the first place where the text is not a formula.
@@ -99,7 +98,7 @@ impl Formula {
         if written.contains('\n') || written.contains("  ") {
             written = written.split_whitespace().collect::<Vec<_>>().join(" ");
         }
-        // The formulas of functions are nested more deeply than calls of them. An unknown number is NaN.
+        // The formulas of functions are nested more deeply than their calls. An unknown number is NaN.
         let is_known = |step: &Step| !matches!(step, Step::Number(number) if number.is_nan());
         if has_calls
             && steps.iter().all(is_known)
@@ -115,8 +114,8 @@ impl Formula {
         self.variables
     }
 
-    /// Returns the square of the formula. The square of a root is its operand: where a sphere's profile ends, the slope
-    /// of the profile is infinite, and the slope of its square is finite.
+    /// Returns the square of the formula. The square of a root is its operand: at the end of a sphere's profile, the
+    /// slope of the profile is infinite, but that of its square is finite.
     pub fn squared(&self) -> Self {
         let mut steps = self.steps.clone();
         match steps.last() {
@@ -139,10 +138,10 @@ impl Formula {
         Self { text, variables, steps, program, spline: None, is_plain }
     }
 
-    /// Evaluates a formula in y at y.
+    /// Evaluates a formula in y.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, y: N) -> N {
-        // Few registers are quicker to set up.
+        // Setting up fewer registers is faster.
         if self.program.registers <= FEW_REGISTERS {
             self.run(&mut [y; FEW_REGISTERS])
         } else {
@@ -155,18 +154,18 @@ impl Formula {
         self.steps.iter().map(|step| step.cost()).sum()
     }
 
-    /// Evaluates the formula in registers. The first registers hold the variables. One function per number type serves
-    /// any number of registers.
+    /// Evaluates the formula in registers. The first ones hold the variables. One function per number type serves any
+    /// number of registers.
     fn run<N: Scalar>(&self, registers: &mut [N]) -> N {
         self.run_inline::<N, true>(&self.program, registers)
     }
 
-    /// Evaluates a program of the formula, as [`run`](Self::run) does.
+    /// Evaluates a program of the formula, like [`run`](Self::run).
     fn run_part<N: Scalar>(&self, program: &Program, registers: &mut [N]) -> N {
         self.run_inline::<N, true>(program, registers)
     }
 
-    /// Evaluates the formula and its derivative at eight y, for kernels.
+    /// Evaluates the formula and its derivative for eight y, in kernels.
     #[inline(always)]
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {

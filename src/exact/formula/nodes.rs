@@ -1,4 +1,4 @@
-//! A polynomial along a line by its values at nodes of the line: quicker than operations on the coefficients.
+//! A polynomial along a line from its values at nodes of the line, which is faster than operations on the coefficients.
 
 use super::field::Field;
 use super::program::{Instruction, Program};
@@ -9,41 +9,43 @@ use crate::roots::bernstein::{BINOMIALS, Bernstein};
 use crate::scalar::{Scalar, per_axis};
 use std::f64::consts::PI;
 
-/// Half the distance from 1 to the next number: the most by which an operation rounds, as a fraction of its result.
+/// Half the distance from 1 to the next number: the maximum rounding error of an operation, as a fraction of its
+/// result.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
-/// A computed bound is multiplied by this factor, so that its own rounding does not matter.
+/// Computed bounds are multiplied by this factor to cover their own rounding.
 const ROUNDED_UP: f64 = 1.0 + 1e-6;
 
-/// The largest degree. The errors of values grow with the degree until operations on the coefficients are more precise by far.
+/// The maximum degree. With higher degrees, the errors of values grow until operations on the coefficients are far more
+/// precise.
 const MOST_DEGREE: usize = 16;
 
-/// The largest number of registers of a program, in values.
+/// The maximum number of registers of a program.
 const MOST_REGISTERS: usize = 24;
 
-/// The number of registers that suffices for most programs.
+/// The number of registers that is enough for most programs.
 const FEW_REGISTERS: usize = 8;
 
-/// The largest error of a coordinate, as a fraction of the box, for which errors of values are known.
+/// The maximum error of a coordinate, as a fraction of the box, for which errors of values are known.
 const MOST_OFF: f64 = 1e-9;
 
-/// A box is enlarged by this fraction of its sides: a line in the box leaves it by rounding alone.
+/// A box is enlarged by this fraction of its sides, because rounding moves a line out of the box.
 const AROUND: f64 = 1.0 / 1024.0;
 
-/// How a formula is evaluated along lines in a box.
+/// The evaluation of a formula along lines in a box.
 pub struct Nodes {
     degree: usize,
     /// The nodes, from -1 to 1.
     places: Vec<f64>,
-    /// For each node, the Bernstein coefficients of the polynomial that is 1 there and 0 at all others.
+    /// For each node, the Bernstein coefficients of the polynomial that is 1 at this node and 0 at the others.
     weights: Vec<Vec<f64>>,
-    /// The largest sum of the absolute values of one coefficient's weights.
+    /// The maximum sum, over coefficients, of the absolute values of a coefficient's weights.
     norm: f64,
-    /// A bound of the error of a value where coordinates are exact, and by how much it grows with their error.
+    /// A bound of the error of a value for exact coordinates, and its growth with the error of the coordinates.
     error: [f64; 2],
-    /// The largest error of a coordinate for which that holds.
+    /// The maximum error of a coordinate for which the bound holds.
     most_off: f64,
-    /// The greatest magnitude of a coordinate in the box.
+    /// The maximum magnitude of a coordinate in the box.
     size: f64,
 }
 
@@ -61,7 +63,8 @@ pub struct NearLine {
 }
 
 impl Nodes {
-    /// Prepares a formula that is a polynomial of this degree along lines in a box; `None` if it is not, or is too long.
+    /// Prepares a formula that is a polynomial of this degree along lines in a box. Returns `None` if it is not, or if
+    /// it is too long.
     pub fn new(field: &Field, degree: usize, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
         let within = per_axis(|axis| {
             let slack = AROUND * (high[axis] - low[axis]);
@@ -74,7 +77,7 @@ impl Nodes {
         }
         let error = |off: f64| error(program, within, off).filter(|error| *error < f64::INFINITY);
         let exact = error(0.0)?;
-        // The error is a polynomial of that of a coordinate, with coefficients above 0, and so below its chord.
+        // The error is a polynomial of a coordinate's error with positive coefficients, and so it is below its chord.
         let grows = (error(most_off)? - exact) / most_off;
         let count = degree + 1;
         let places: Vec<f64> =
@@ -86,7 +89,7 @@ impl Nodes {
         Some(Self { degree, places, weights, norm, error, most_off, size })
     }
 
-    /// Returns the formula on a piece of a line in the box; `None` where its error is not known.
+    /// Returns the formula on a piece of a line in the box, or `None` if its error is unknown.
     pub fn form<const N: usize>(
         &self,
         field: &Field,
@@ -112,7 +115,7 @@ impl Nodes {
     ) -> Option<Bernstein<f64, N>> {
         let far = piece.magnitude();
         let off = blur + (turn + 16.0 * ROUNDING) * far + 8.0 * ROUNDING * self.size;
-        // Written so that a NaN is not near.
+        // The comparison is false for NaN.
         let is_near = off <= self.most_off;
         if !is_near || self.degree >= N {
             return None;
@@ -149,7 +152,7 @@ fn run<const LANES: usize, const REGISTERS: usize>(program: &Program, at: [[f64;
     let mut registers = [[0.0; LANES]; REGISTERS];
     registers[..3].copy_from_slice(&at);
     for Instruction { step, operands, result } in &program.instructions {
-        // Not `map` of an array, which is a call for each element.
+        // `map` of an array would be a call for each element.
         let (a, b) = (&registers[usize::from(operands[0])], &registers[usize::from(operands[1])]);
         let mut value = [0.0; LANES];
         macro_rules! each {
@@ -176,8 +179,8 @@ fn run<const LANES: usize, const REGISTERS: usize>(program: &Program, at: [[f64;
     registers[usize::from(program.result)]
 }
 
-/// Returns a bound of the error of a program's value in a box where coordinates may be off by this much; `None` for a program
-/// that does more than add, multiply, and divide by numbers.
+/// Returns a bound of the error of a program's value in a box. Coordinates may be off by `off`. Returns `None` if the
+/// program has operations other than sums, products, and quotients by numbers.
 fn error(program: &Program, within: [Interval; 3], off: f64) -> Option<f64> {
     let mut registers = vec![(Interval::constant(0.0), 0.0); program.registers.max(3)];
     for axis in 0..3 {
@@ -208,12 +211,12 @@ fn error(program: &Program, within: [Interval; 3], off: f64) -> Option<f64> {
     Some(registers[usize::from(program.result)].1)
 }
 
-/// Returns for each node the Bernstein coefficients of the polynomial that is 1 there and 0 at all others, by Gauss's
-/// elimination with twice the digits.
+/// Returns for each node the Bernstein coefficients of the polynomial that is 1 at this node and 0 at the others, by
+/// Gaussian elimination in double-double arithmetic.
 fn weights(places: &[f64]) -> Option<Vec<Vec<f64>>> {
     let (count, zero, one) = (places.len(), DoubleDouble::from(0.0), DoubleDouble::from(1.0));
     let degree = count - 1;
-    // In each row, the basis at a node, and what the row is of the values.
+    // Each row has the basis at a node, and the row's combination of the values.
     let mut rows: Vec<Vec<DoubleDouble>> = Vec::with_capacity(count);
     for (node, place) in places.iter().enumerate() {
         let x = (one + DoubleDouble::from(*place)) * DoubleDouble::from(0.5);

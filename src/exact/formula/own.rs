@@ -1,4 +1,4 @@
-//! Functions that a scene defines, and texts of formulas in which the names of a scene are replaced.
+//! Functions that a scene defines, and texts of formulas with the names of a scene replaced.
 
 use super::function;
 use super::step::Step;
@@ -6,37 +6,36 @@ use super::words::is_in_name;
 use crate::text;
 use std::ops::Range;
 
-/// The most arguments of a function.
+/// The maximum number of arguments of a function.
 const MOST_ARGUMENTS: usize = 16;
 
 /// The maximum length of a formula's text, in bytes, after calls are replaced by the formulas of their functions.
 const LONGEST: usize = 1 << 20;
 
-/// A function that a scene defines, as `f` of u and v as `u^2 + v`.
+/// A function that a scene defines, such as `f(u, v)` as `u^2 + v`.
 #[derive(Clone, Debug)]
 pub struct OwnFunction {
     count: usize,
-    /// Its operations; the variables are its arguments.
+    /// The operations. The variables are the arguments.
     pub(super) steps: Vec<Step>,
     pub(super) pieces: Vec<Piece>,
 }
 
 impl OwnFunction {
-    /// Makes a function with this number of arguments from its operations and the pieces of its text.
+    /// Makes a function with `count` arguments from its operations and the pieces of its text.
     pub(super) fn new(count: usize, steps: Vec<Step>, pieces: Vec<Piece>) -> Self {
         Self { count, steps, pieces }
     }
 
-    /// Returns the number of its arguments.
+    /// Returns the number of arguments.
     pub fn count(&self) -> usize {
         self.count
     }
 }
 
-/// Splits the head of a function, `f(u, v)`, into its name and its arguments; `None` if the text is not such a head.
+/// Splits the head of a function, `f(u, v)`, into its name and its arguments. Returns `None` for other texts.
 ///
-/// # Errors
-/// Returns why the text cannot be the head of a function.
+/// # Errors Returns the reason why the text cannot be the head of a function.
 pub fn head(text: &str) -> Option<(&str, Result<Vec<&str>, String>)> {
     let (name, rest) = text.split_once('(')?;
     let arguments = || {
@@ -65,7 +64,7 @@ pub fn head(text: &str) -> Option<(&str, Result<Vec<&str>, String>)> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Piece {
     Text(String),
-    /// A variable, by its index, and as it is written.
+    /// A variable, by its index, and as written.
     Variable(usize, String),
 }
 
@@ -96,7 +95,7 @@ impl Edits {
     /// Replaces the name of a number by the number.
     pub fn number(&mut self, text: &str, place: Range<usize>, number: f64) {
         let number = text::shortest(number);
-        // In `2n`, the digits of a number would be part of the number before it.
+        // In `2n`, the digits of the number would continue the number before it.
         let before = text[..place.start].trim_end();
         let is_factor = before.ends_with(|c: char| c.is_alphanumeric() || ".)|".contains(c));
         let written = if number.starts_with('-') || is_factor { format!("({number})") } else { number };
@@ -108,7 +107,7 @@ impl Edits {
         self.all.push((place, vec![Piece::Variable(index, String::new())]));
     }
 
-    /// Replaces a call by the formula of its function; returns whether the result is short enough.
+    /// Replaces a call by the formula of its function. Returns whether the result is short enough.
     pub fn call(&mut self, place: Range<usize>, of: &[Piece], arguments: &[Vec<Piece>]) -> bool {
         let bracket = |text: &str| Piece::Text(text.to_owned());
         let mut pieces = vec![bracket("(")];

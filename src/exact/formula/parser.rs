@@ -1,4 +1,4 @@
-//! The parser: from the text of a formula to its operations in postfix order.
+//! The parser, from the text of a formula to its operations in postfix order.
 
 use super::function::{self, Meaning};
 use super::own::{Edits, OwnFunction, Piece};
@@ -12,32 +12,32 @@ use std::mem::replace;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What a name of a scene stands for.
+/// The meaning of a name in a scene.
 #[derive(Clone, Debug)]
 pub enum Meant {
     /// A number.
     Number(f64),
-    /// A function of the scene's own.
+    /// A function that the scene defines.
     Function(Arc<OwnFunction>),
 }
 
-/// Looks up what a scene gives a name.
+/// Looks up a name of a scene.
 pub type Named<'n> = &'n dyn Fn(&str) -> Option<Meant>;
 
-/// What a text says.
+/// The parsed text.
 pub(super) struct Operations {
     pub steps: Vec<Step>,
     /// The text, with the names of a scene replaced.
     pub pieces: Vec<Piece>,
-    /// Whether it calls functions of the scene.
+    /// Whether the text calls functions of the scene.
     pub has_calls: bool,
 }
 
-/// The greatest whole exponent for which a power is computed by multiplications.
+/// The maximum whole exponent of a power that is computed by multiplications.
 const MAX_POWER: i32 = 1000;
 
 /// The maximum number of operations of a formula. A function that is itself a formula may use an argument more than
-/// once, so nested calls may use it many times.
+/// once, and nested calls many times.
 const MAX_STEPS: usize = 1 << 18;
 
 /// Parses the operations of a formula in these variables and named numbers. An equation in x, y and z is the difference
@@ -108,7 +108,7 @@ struct Parser<'t> {
 type Parsed = Result<(), FormulaFault>;
 
 impl<'t> Parser<'t> {
-    /// Skips blanks and returns the next character.
+    /// Skips white space and returns the next character.
     fn peek(&mut self) -> Option<char> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();
@@ -142,7 +142,7 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// Parses a product. Factors may follow each other without a sign: `2x`, `(x + y)(x - y)`.
+    /// Parses a product. The sign between factors may be omitted: `2x`, `(x + y)(x - y)`.
     fn product(&mut self) -> Parsed {
         self.peek();
         let start = self.at;
@@ -178,7 +178,7 @@ impl<'t> Parser<'t> {
         if self.text[self.at..].starts_with("**") { None } else { self.take(&['*', '/']) }
     }
 
-    /// Tells whether a factor follows that needs no sign before it.
+    /// Tells whether the next character begins a factor without a sign.
     fn begins_factor(&mut self) -> bool {
         let is_in_bars = self.is_in_bars;
         self.peek().is_some_and(|next| next == '(' || next.is_alphabetic() || next == '|' && !is_in_bars)
@@ -270,7 +270,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Parses what stands in parentheses, or in `| |`, in which another `|` needs parentheses around it.
+    /// Parses the contents of parentheses, or of `| |`, where a nested `|` needs parentheses.
     fn enclosed(&mut self, is_in_bars: bool) -> Parsed {
         let outer = replace(&mut self.is_in_bars, is_in_bars);
         self.sum()?;
@@ -292,7 +292,7 @@ impl<'t> Parser<'t> {
             at + rest.take_while(|byte| byte.is_ascii_digit() || *byte == b'.').count()
         };
         let mut end = digits(start);
-        // An `e` is an exponent only before digits: in `2exp(x)`, it is the first letter of a function.
+        // An `e` is an exponent only before digits. In `2exp(x)`, it begins a function.
         if let Some(exponent) = self.text[end..].strip_prefix(['e', 'E']) {
             let unsigned = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
             if unsigned.starts_with(|c: char| c.is_ascii_digit()) {
@@ -340,7 +340,7 @@ impl<'t> Parser<'t> {
                 }
             }
             (_, _, Some(function)) => self.call(function, place)?,
-            // `X` is x, unless the scene has a number of this name.
+            // `X` is x, unless the scene has a number with this name.
             _ => match self.variables.iter().position(|name| *name == lower && word.len() == 1) {
                 Some(variable) => self.variable(place, variable),
                 None => return Err(self.unknown(word, place)),
@@ -354,7 +354,7 @@ impl<'t> Parser<'t> {
         self.edits.variable(place, index);
     }
 
-    /// Explains a name that has no meaning here.
+    /// Explains an unknown name.
     fn unknown(&self, word: &str, place: Range<usize>) -> FormulaFault {
         let fault = self.fault(place, format!("unknown name `{word}` in a formula"));
         let product: Vec<_> = word.split("").filter(|letter| !letter.is_empty()).collect();
@@ -379,7 +379,7 @@ impl<'t> Parser<'t> {
             starts.push(self.steps.len());
             self.deeper()?;
             self.enclosed(false)?;
-            // The values so far are combined into one, so that many arguments nest no deeper than two.
+            // The values so far are combined into one, and so many arguments nest no deeper than two.
             if let Meaning::Operation(of) = function.meaning {
                 self.steps.push(Step::Call(of));
                 self.depth = depth;
@@ -418,7 +418,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Reports a fault if the number of arguments is not one that the function takes.
+    /// Returns an error if a function does not take this number of arguments.
     fn counted(&mut self, name: &str, place: &Range<usize>, found: usize, count: usize) -> Parsed {
         let takes = text::count(count, "value");
         if found < count {
@@ -430,8 +430,8 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Replaces the operations of arguments by the operations of a function of them. `starts` are the places where the
-    /// arguments start.
+    /// Replaces the operations of arguments by the operations of a function of them. `starts` are the starts of the
+    /// arguments.
     fn apply(&mut self, of: &[Step], starts: &[usize], place: &Range<usize>) -> Parsed {
         let uses = |step: &Step| match step {
             Step::Variable(index) => {
@@ -456,8 +456,8 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// Combines the first arguments, one after the other, each with the last one as the third value. `starts` are the places where
-    /// the arguments start.
+    /// Combines the first arguments, one after the other, each with the last one as the third value. `starts` are the
+    /// starts of the arguments.
     fn combine(&mut self, of: Function, starts: &[usize], place: &Range<usize>) -> Parsed {
         let [_, second, ends @ ..] = starts else { return Ok(()) };
         let last = self.steps.split_off(*starts.last().unwrap_or(second));
@@ -476,7 +476,7 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// Parses the arguments of a function of the scene's own, and applies it.
+    /// Parses the arguments of a function that the scene defines, and applies it.
     fn own_call(&mut self, function: &OwnFunction, place: Range<usize>) -> Parsed {
         let (name, depth) = (self.text[place.clone()].to_owned(), self.depth);
         let open = self.open(&name, &place)?;
@@ -501,8 +501,8 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// Parses the sign of a comparison and its right side. The resulting value is 0 or above where the comparison holds
-    /// or, if it is reversed, where it does not hold. Returns whether it is reversed.
+    /// Parses the sign of a comparison and its right side. The resulting value is 0 or above if the comparison is true
+    /// or, if it is reversed, if the comparison is false. Returns whether it is reversed.
     fn comparison(&mut self) -> Result<bool, FormulaFault> {
         let Some(sign) = self.take(&['<', '>', '≤', '≥']) else {
             let fault = self.fault_here("expected a comparison");

@@ -1,4 +1,4 @@
-//! Formulas as programs: operations on registers. Equal operations are carried out once.
+//! Formulas as programs: operations on registers. Equal operations are carried out only once.
 
 use super::step::{Function, MAX_DEPTH, Step};
 use super::variables::SURFACE;
@@ -14,8 +14,8 @@ pub(super) struct Instruction {
 }
 
 impl Instruction {
-    /// Tells whether this and the next operation are the sine and the cosine of the same number, in any order: computing both
-    /// takes hardly longer than computing one.
+    /// Tells whether this and the next operation are the sine and the cosine of the same number, in any order.
+    /// Computing both takes hardly longer than computing one.
     #[inline(always)]
     pub fn is_of_one_angle_with(&self, next: &Self) -> bool {
         let steps = (self.step, next.step);
@@ -25,21 +25,21 @@ impl Instruction {
     }
 }
 
-/// A formula's operations in their order.
+/// A formula's operations, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Program {
     pub instructions: Vec<Instruction>,
-    /// The register that holds the result in the end.
+    /// The register with the final result.
     pub result: u8,
-    /// The number of registers. The first registers hold the variables.
+    /// The number of registers. The first ones hold the variables.
     pub registers: usize,
 }
 
-/// The number of registers of the largest program, in values: one for each variable, and those for the deepest nesting,
-/// whose innermost operation is a square root computed from its operand and a 0.
+/// The number of registers of the largest program: one for each variable, and those for the deepest nesting, with a
+/// square root of its operand and a 0 as the innermost operation.
 pub(super) const MOST_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 
-/// An operation, and the indices of the values that it is applied to.
+/// An operation, and the indices of its operands.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Value {
     pub step: Step,
@@ -55,7 +55,7 @@ pub(super) struct Values {
 }
 
 impl Value {
-    /// Returns a key that is the same for values that are the same number.
+    /// Returns a key that is equal for equal values.
     fn key(&self) -> (Discriminant<Step>, u64, [usize; 3]) {
         let payload = match self.step {
             Step::Number(number) | Step::Scale(number) | Step::Shift(number) => number.to_bits(),
@@ -67,14 +67,14 @@ impl Value {
         (discriminant(&self.step), payload, self.operands)
     }
 
-    /// Returns the values that the operation is applied to.
+    /// Returns the operands of the operation.
     pub fn used(&self) -> &[usize] {
         &self.operands[..self.step.operands()]
     }
 }
 
 impl Program {
-    /// Makes a program of operations in postfix order. `variables` is the number of variables.
+    /// Makes a program from operations in postfix order. `variables` is the number of variables.
     pub fn new(steps: &[Step], variables: usize) -> Self {
         Self::of(&Values::new(steps, variables), variables)
     }
@@ -110,11 +110,11 @@ impl Program {
         Self { instructions, result: places[*result] as u8, registers }
     }
 
-    /// Returns the values that the program computes, in its order.
+    /// Returns the values that the program computes, in order.
     pub fn values(&self, variables: usize) -> Values {
         let variable = |index| Value { step: Step::Variable(index as u8), operands: [0; 3] };
         let mut list: Vec<_> = (0..variables).map(variable).collect();
-        // The value that each register holds.
+        // The value in each register.
         let mut held = vec![0; self.registers];
         (0..variables).for_each(|index| held[index] = index);
         for Instruction { step, operands, result } in &self.instructions {
@@ -127,12 +127,12 @@ impl Program {
 }
 
 impl Values {
-    /// Returns the values of operations in postfix order: each value once, if there are enough registers for that. A
-    /// shared value waits in a register until its last use.
+    /// Returns the values of operations in postfix order. Equal values are shared if there are enough registers,
+    /// because a shared value occupies a register until its last use.
     pub fn new(steps: &[Step], variables: usize) -> Self {
         let shared = values(steps, variables, true);
         let fits = |values: &Self| Program::of(values, variables).registers <= MOST_REGISTERS;
-        // Kernels compute formulas in one variable in few registers.
+        // Kernels compute formulas in one variable, with few registers.
         let paired = if variables > 1 { shared.paired(variables) } else { None };
         if let Some(paired) = paired.filter(fits) {
             paired
@@ -143,8 +143,8 @@ impl Values {
         }
     }
 
-    /// Returns the same values, reordered so that the sine and the cosine of a number follow each other; `None` if
-    /// there is no such pair.
+    /// Returns the same values, with the sine and the cosine of a number next to each other, or `None` if there is no
+    /// such pair.
     fn paired(&self, variables: usize) -> Option<Self> {
         let list = &self.list;
         let pairs = list.iter().map(|value| {
@@ -174,7 +174,7 @@ impl Values {
     }
 }
 
-/// Returns the values of operations; if they are shared, each value once.
+/// Returns the values of operations. If `are_shared`, equal values occur once.
 fn values(steps: &[Step], variables: usize, are_shared: bool) -> Values {
     let variable = |index: usize| Value { step: Step::Variable(index as u8), operands: [0; 3] };
     let mut values: Vec<_> = (0..variables).map(variable).collect();
@@ -215,7 +215,7 @@ mod tests {
         let formula = formula.expect("a formula");
         let operations = &formula.program.instructions;
         let squares = operations.iter().filter(|operation| operation.step == Step::Powi(2)).count();
-        // The squares of x, of y, and of the first factor.
+        // These are the squares of x, of y, and of the first factor.
         assert_eq!((squares, operations.len()), (3, 13));
         let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
         let expected = (9.0 + 4.0 - 1.0) * (9.0 + 4.0 - 1.0) * (4.0 + 1.5 - 1.0) + 9_f64.sin().powi(2);
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_formula_that_shares_more_than_there_are_registers_is_computed_without_sharing() {
-        // Each square is needed again in the opposite order.
+        // Each square is needed again, in the opposite order.
         let squares: Vec<_> = (0..60).map(|index| format!("(y + {index})^2")).collect();
         let (there, back) =
             (squares.join(" + "), squares.iter().rev().cloned().collect::<Vec<_>>().join(" - "));
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn the_deepest_formulas_of_a_surface_have_registers() {
-        // Each sine waits for what follows it, and a root takes one register more.
+        // Each sine waits for the rest of the formula, and a root takes one more register.
         let open = |depth: usize| (0..depth).map(|k| format!("(sin(x + {k}) + ")).collect::<String>();
         let nested = |depth: usize| format!("{}sqrt(nz){}", open(depth), ")".repeat(depth));
         let formulas = (1..100).map_while(|depth| Formula::parse_in(&nested(depth), SURFACE).ok());

@@ -7,13 +7,13 @@ use super::variables::SPACE;
 use crate::polynomial::MOST;
 use std::sync::Arc;
 
-/// The largest number of operations of a numerator.
+/// The maximum number of operations of a numerator.
 const MOST_STEPS: usize = 1 << 12;
 
-/// The largest power of a factor of a denominator. A polynomial of a higher degree is not expanded along a line.
+/// The maximum power of a factor of a denominator. A polynomial of a higher degree is not expanded along a line.
 const MOST_POWER: i32 = MOST as i32;
 
-/// Operations, as a numerator, and the factors of its denominator, each once, with its power.
+/// The operations of a numerator, and the distinct factors of its denominator, with their powers.
 #[derive(Clone, Default)]
 struct Quotient {
     above: Vec<Step>,
@@ -21,9 +21,9 @@ struct Quotient {
 }
 
 impl Field {
-    /// Returns the numerator and the denominator of a quotient of polynomials without a common factor. Lines that meet
-    /// every factor tell whether they have one. The numerator is 0 where the formula is 0, and elsewhere at most on
-    /// curves. `None` where the formula is not such a quotient, or has no denominator.
+    /// Returns the numerator and the denominator of a quotient of polynomials without a common factor, as tested on
+    /// lines that meet each factor. The numerator is 0 where the formula is 0, and elsewhere at most on curves. Returns
+    /// `None` if the formula is not such a quotient, or has no denominator.
     pub fn quotient(&self) -> Option<[Self; 2]> {
         let steps = &self.formula().steps;
         if !steps.contains(&Step::Div) && !steps.iter().any(|step| matches!(step, Step::Powi(..0))) {
@@ -48,7 +48,7 @@ impl Field {
 }
 
 impl Quotient {
-    /// Takes operations apart; `None` if any of them cannot occur in a quotient of polynomials.
+    /// Splits operations into a quotient, or returns `None` if one of them cannot occur in a quotient of polynomials.
     fn of(steps: &[Step]) -> Option<Self> {
         let mut waiting: Vec<Self> = Vec::new();
         for step in steps {
@@ -87,7 +87,7 @@ impl Quotient {
         self
     }
 
-    /// Returns the power of a factor of the denominator; 0 if the denominator does not have this factor.
+    /// Returns the power of a factor of the denominator, or 0 if the denominator does not have it.
     fn power_of(&mut self, factor: &[Step]) -> &mut i32 {
         let known = self.below.iter().position(|(known, _)| known == factor).unwrap_or(self.below.len());
         if known == self.below.len() {
@@ -105,7 +105,7 @@ impl Quotient {
         Some(self)
     }
 
-    /// Brings both quotients to one denominator, and adds or subtracts.
+    /// Adds or subtracts, with a common denominator.
     fn plus(mut self, mut other: Self, step: Step) -> Self {
         for (factor, _) in self.below.clone().iter().chain(&other.below.clone()) {
             let (own, its) = (*self.power_of(factor), *other.power_of(factor));
@@ -122,7 +122,7 @@ impl Quotient {
         self
     }
 
-    /// Returns 1 divided by the quotient. A constant factor of the numerator does not go into the new denominator.
+    /// Returns 1 divided by the quotient. A constant factor of the numerator stays out of the new denominator.
     fn inverse(self) -> Option<Self> {
         let mut inverse = Self::number(1.0);
         for (factor, power) in &self.below {

@@ -1,7 +1,7 @@
-//! Formulas along lines of rational numbers, exactly: polynomials with whole coefficients.
+//! Exact formulas along lines of rational numbers: polynomials with integer coefficients.
 //!
-//! The numbers of a formula are `f64`, and therefore fractions. A formula that adds, subtracts and multiplies, and
-//! divides by numbers alone, is a polynomial along a line, whose coefficients are fractions if the line's are.
+//! The numbers of a formula are `f64`, and therefore fractions. A formula of sums, differences, products, and quotients
+//! by numbers is a polynomial along a line. Its coefficients are fractions if the line's are.
 
 use super::field::Field;
 use super::program::{Instruction, Program};
@@ -12,15 +12,14 @@ use crate::roots::whole::{Dyadic, Whole};
 use dashu_int::IBig;
 use dashu_int::ops::{Abs, BitTest};
 
-/// The largest power of two by which numbers are scaled to add them, or to make them whole: the 12th power of 1e-300 is
+/// The maximum power of two for scaling numbers to add them, or to make them integers. The 12th power of 1e-300 is
 /// smaller, and not worth the time.
 const MOST_BITS: i64 = 1 << 14;
 
-/// The maximum number of digits of a number, in bits: coefficients of polynomials of degree 40 have some thousands of
-/// bits.
+/// The maximum number of bits of a number. Coefficients of polynomials of degree 40 have some thousands of bits.
 const MOST_DIGITS: usize = 1 << 16;
 
-/// A polynomial whose coefficients are these whole numbers times a power of two, divided by a positive number.
+/// A polynomial. Its coefficients are these integers times a power of two, divided by a positive number.
 #[derive(Clone, Debug)]
 pub struct Rational {
     numerators: Vec<IBig>,
@@ -40,13 +39,13 @@ impl Rational {
         Self { numerators: vec![numerator], exponent, denominator }
     }
 
-    /// Takes a fraction; `None` if it is not exact.
+    /// Converts a fraction, or returns `None` if it is not exact.
     pub fn of(fraction: Fraction) -> Option<Self> {
         let [above, below] = fraction.exactly()?.map(Dyadic::from);
         Some(Self::new(above.digits, above.exponent - below.exponent, below.digits))
     }
 
-    /// Returns whether the polynomial is a number.
+    /// Returns whether the polynomial is constant.
     fn is_number(&self) -> bool {
         self.numerators.len() == 1
     }
@@ -89,7 +88,7 @@ impl Rational {
         Self { numerators, exponent, denominator }.not_too_long()
     }
 
-    /// Returns the polynomial, unless one of its numbers has too many digits.
+    /// Returns the polynomial, unless one of its numbers has too many bits.
     fn not_too_long(self) -> Option<Self> {
         let numbers = self.numerators.iter().chain([&self.denominator]);
         let is_short = numbers.into_iter().all(|number| number.bit_len() <= MOST_DIGITS);
@@ -135,12 +134,12 @@ impl Rational {
 }
 
 impl Field {
-    /// Returns the formula along the points `origin + t dir`, times a positive number; `None` if it is no polynomial of t of a
-    /// degree that a [`Polynomial`](crate::polynomial::Polynomial) may have.
+    /// Returns the formula along the points `origin + t dir`, times a positive number. Returns `None` if it is not a
+    /// polynomial of t with a degree that a [`Polynomial`](crate::polynomial::Polynomial) may have.
     pub fn exactly_along(&self, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
         let place = |axis: usize| origin[axis].with_slope(&dir[axis]);
         let Rational { mut numerators, .. } = run(self.program(), [place(0)?, place(1)?, place(2)?])?;
-        // What all coefficients have in common only makes them longer.
+        // A common power of two would only make coefficients longer.
         let zeros = numerators.iter().filter_map(|of| of.trailing_zeros()).min().unwrap_or(0);
         numerators.iter_mut().for_each(|of| *of >>= zeros);
         Some(Whole::new(numerators))

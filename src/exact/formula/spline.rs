@@ -12,11 +12,11 @@ use std::sync::Arc;
 const FACTORIALS: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 impl Formula {
-    /// Returns the natural cubic spline through points (y, value), at least two, of which each y is above the one
-    /// before: it has two continuous derivatives, and no curvature at its ends.
+    /// Returns the natural cubic spline through at least two points (y, value), with increasing y. It has two
+    /// continuous derivatives, and no curvature at its ends.
     pub fn through(points: &[[f64; 2]]) -> Self {
         let formula = Self::new("the spline".to_owned(), HEIGHT, vec![Step::Variable(0), Step::Spline]);
-        // Eight y at a time may lie on eight pieces.
+        // Eight values of y may lie on eight pieces.
         Self { spline: Some(Arc::new(Spline::new(points))), is_plain: false, ..formula }
     }
 }
@@ -36,8 +36,8 @@ impl From<Wide> for Coefficient {
 }
 
 impl Spline {
-    /// Makes the natural spline through points (y, value), at least two, of which each y is above the one before: it
-    /// has no curvature at its ends.
+    /// Makes the natural spline through at least two points (y, value), with increasing y. It has no curvature at its
+    /// ends.
     pub fn new(points: &[[f64; 2]]) -> Self {
         let knots = points.iter().map(|[y, _]| *y).collect();
         let points: Vec<_> = points.iter().map(|point| point.map(Fine::constant)).collect();
@@ -61,7 +61,7 @@ impl Spline {
     }
 }
 
-/// Returns the second derivatives of the spline at its points: Thomas's algorithm for a diagonally dominant system.
+/// Returns the second derivatives of the spline at its points, by Thomas's algorithm for a diagonally dominant system.
 fn curvatures(points: &[[Fine; 2]]) -> Vec<Fine> {
     let (count, constant) = (points.len(), Fine::constant);
     let width = |piece: usize| points[piece + 1][0] - points[piece][0];

@@ -3,7 +3,7 @@
 use crate::scalar::{Scalar, apart, apart_if};
 use crate::spline::Spline;
 
-/// The least size of a number, in bytes, for which each operation is a call.
+/// The minimum size of a number, in bytes, at which each operation is a call.
 const LONG: usize = 64;
 
 /// An operation of a formula.
@@ -29,7 +29,7 @@ pub(super) enum Step {
 }
 
 impl Step {
-    /// Returns the number of values that the operation is applied to.
+    /// Returns the number of operands.
     #[inline(always)]
     pub fn operands(self) -> usize {
         match self {
@@ -63,8 +63,8 @@ impl Step {
         }
     }
 
-    /// Applies the operation to one value or two, or with a third one that `c` returns. `MAY_CALL` tells whether operations of
-    /// long numbers are calls.
+    /// Applies the operation to one or two values, or with a third one that `c` returns. `MAY_CALL` tells whether
+    /// operations on long numbers are calls.
     #[inline(always)]
     pub fn of<N: Scalar, const MAY_CALL: bool>(
         self,
@@ -73,7 +73,7 @@ impl Step {
         c: impl FnOnce() -> N,
         spline: Option<&Spline>,
     ) -> N {
-        /// Calls an operation of a long number, such as one with derivatives in wide precision, which takes up to
+        /// Calls an operation on a long number. One with derivatives in wide precision, for example, takes up to
         /// thousands of instructions.
         macro_rules! long {
             ($operation:expr) => {
@@ -144,18 +144,18 @@ pub(super) enum Function {
     Max,
     Pow,
     Noise,
-    /// 1 from 0 upward, and 0 below.
+    /// 1 for numbers from 0 up, and 0 for negative ones.
     Heaviside,
-    /// The second value where the first one is 0 or above, and the third one elsewhere.
+    /// The second value if the first one is 0 or above, and otherwise the third one.
     If,
     Atan2,
-    /// The smallest of two values, and the largest: rounded where they differ by less than the third one.
+    /// The minimum and the maximum of two values, rounded off where they differ by less than the third one.
     Smin,
     Smax,
 }
 
-/// Returns by how much the smallest or the largest of two values is rounded: a quarter of the width where they are equal, and 0
-/// where they differ by the width or more.
+/// Returns the amount by which the minimum or the maximum of two values is rounded off: a quarter of the width if they
+/// are equal, and 0 if they differ by the width or more.
 ///
 /// Source: I. Quilez, "Smooth minimum" (2013), the quadratic polynomial.
 #[inline(always)]
@@ -163,10 +163,10 @@ fn blend<N: Scalar>(a: N, b: N, width: N) -> N {
     (width - (a - b).abs()).max(N::constant(0.0)).powi(2) / width.scaled(4.0)
 }
 
-/// The deepest nesting that a formula may have, in values that wait for an operation.
+/// The maximum nesting of a formula, as the number of values that wait for an operation.
 pub(super) const MAX_DEPTH: usize = 32;
 
-/// Returns the largest number of values that wait for an operation.
+/// Returns the maximum number of values that wait for an operation.
 pub fn deepest(steps: &[Step]) -> usize {
     let (mut depth, mut deepest) = (0, 0);
     for step in steps {

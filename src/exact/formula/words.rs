@@ -1,4 +1,4 @@
-//! The words of formulas, and faults in their texts.
+//! The words of formulas, and errors in their texts.
 
 use super::function::{self, functions};
 use crate::text;
@@ -13,11 +13,11 @@ pub struct FormulaFault {
     pub message: String,
     /// The correction, for messages.
     pub help: String,
-    /// The name that is unknown, if that is what is wrong.
+    /// The unknown name, if that is the error.
     pub unknown: Option<String>,
 }
 
-/// Returns whether a name means something in every formula, so that a scene cannot give it to a number.
+/// Returns whether a name has a meaning in all formulas, and a scene cannot give it to a number.
 pub fn is_taken(name: &str) -> bool {
     ["x", "y", "z", "pi", "π"].contains(&name)
         || function::find(name).is_some_and(function::FormulaFunction::is_reserved)
@@ -31,7 +31,7 @@ pub fn is_in_name(letter: char) -> bool {
     (letter.is_alphanumeric() || letter == '_') && !SUPERSCRIPTS.contains(&letter)
 }
 
-/// Says what a formula in these variables consists of.
+/// Describes the elements of a formula in these variables.
 pub(super) fn language(variables: &[&str]) -> String {
     let variables = match variables {
         [] => "named numbers".to_owned(),

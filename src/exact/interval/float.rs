@@ -1,15 +1,16 @@
-//! The endpoints of an interval: floating-point numbers, and how far outward to round them.
+//! The endpoints of an interval: floating-point numbers, and their outward rounding.
 
 use crate::sines::sines;
 use f256::f256;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A floating-point number that can be an endpoint of an [`Interval`](super::Interval).
+/// A floating-point number for the endpoints of an [`Interval`](super::Interval).
 ///
-/// Sums, products, quotients and square roots are those of IEEE 754, rounded to nearest. All other functions are
-/// trusted to a stated number of ulps, by which [`around`](Self::around) widens; `intervals_hold_the_true_results` and
-/// `wide_intervals_hold_the_right_results` in `tests/shapes/double_double.rs` compare them with more precise ones.
+/// Sums, products, quotients and square roots are those of IEEE 754, rounded to nearest. Other functions are assumed to
+/// have an error of a stated number of ulps, by which [`around`](Self::around) widens.
+/// `intervals_hold_the_true_results` and `wide_intervals_hold_the_right_results` in `tests/shapes/double_double.rs`
+/// compare them with more precise functions.
 pub trait Float:
     Copy
     + Debug
@@ -32,21 +33,21 @@ pub trait Float:
 
     /// Converts from `f64`, exactly.
     fn of(value: f64) -> Self;
-    /// Converts to one of the two neighbouring `f64`; infinite where the number is too large.
+    /// Converts to one of the two neighbouring `f64`, or infinity if the number is too large.
     fn to_f64(self) -> f64;
     /// Tells whether [`to_f64`](Self::to_f64) certainly returns the number itself.
     fn is_double(self) -> bool {
         Self::of(self.to_f64()) == self
     }
-    /// Widens rounded endpoints by at least one ulp, so that they enclose the exact ones. A NaN stays a NaN.
+    /// Widens rounded endpoints by at least one ulp to enclose the exact ones. A NaN stays a NaN.
     fn outward(low: Self, high: Self) -> (Self, Self);
-    /// Widens the rounded endpoints of a sum or difference like [`outward`](Self::outward), except that 0 stays 0, as a
-    /// sum does not underflow.
+    /// Widens the rounded endpoints of a sum or difference like [`outward`](Self::outward), except that 0 stays 0,
+    /// because a sum does not underflow.
     fn outward_sum(low: Self, high: Self) -> (Self, Self);
-    /// Widens the endpoints that a function outside of IEEE 754 has returned by that function's error bound.
+    /// Widens the endpoints from a function outside of IEEE 754 by its error bound.
     fn around(low: Self, high: Self) -> (Self, Self);
-    /// Returns the smallest and the largest product of the endpoints of two intervals, rounded to nearest; `None` for
-    /// cases that need more care, such as endpoints that are 0 or infinite.
+    /// Returns the smallest and the largest product of the endpoints of two intervals, rounded to nearest, or `None`
+    /// for cases that need more care, such as endpoints that are 0 or infinite.
     fn product_ends(one: [Self; 2], other: [Self; 2]) -> Option<(Self, Self)>;
     /// Converts endpoints, rounded outward.
     fn enclosing(low: f256, high: f256) -> (Self, Self);
@@ -58,11 +59,11 @@ pub trait Float:
     fn tan(self) -> Self;
     /// Returns e raised to this power.
     fn exp(self) -> Self;
-    /// Returns the natural logarithm of a number that is not negative; the logarithm of 0 is negative infinity.
+    /// Returns the natural logarithm of a nonnegative number. The logarithm of 0 is negative infinity.
     fn ln(self) -> Self;
     /// Returns the angle in radians, from -π to π, from the positive x axis to the point with this y.
     fn atan2(self, x: Self) -> Self;
-    /// Returns the greatest integer that is not greater than the number.
+    /// Returns the largest integer that is at most the number.
     fn floor(self) -> Self;
     /// Returns the absolute value.
     fn abs(self) -> Self;
@@ -73,13 +74,13 @@ pub trait Float:
         self.abs() < Self::INFINITY
     }
 
-    /// Returns the smaller of two numbers; if one is NaN, the other one.
+    /// Returns the smaller of two numbers. If one is NaN, returns the other.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         if self < other || other.is_nan() { self } else { other }
     }
 
-    /// Returns the larger of two numbers; if one is NaN, the other one.
+    /// Returns the larger of two numbers. If one is NaN, returns the other.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other || other.is_nan() { self } else { other }
@@ -93,7 +94,7 @@ pub trait Float:
     }
 }
 
-/// The relative amount by which an endpoint in `f64` is moved outward: a little more than one ulp.
+/// The relative amount by which an endpoint in `f64` is moved outward: slightly more than one ulp.
 const OUTWARD: f64 = 1.04 * f64::EPSILON;
 
 impl Float for f64 {
@@ -113,15 +114,15 @@ impl Float for f64 {
     }
 
     /// Widens by a product and a difference, which are many times faster than `next_up` and `next_down`. The product is
-    /// at least 1.04 ulps, so at least one whole ulp is left after the difference is rounded; `UNDERFLOW` is more than
-    /// the loss of a result that underflows.
+    /// at least 1.04 ulps, and at least one whole ulp remains after the difference is rounded. `UNDERFLOW` exceeds the
+    /// loss of a result that underflows.
     #[inline(always)]
     fn outward(low: Self, high: Self) -> (Self, Self) {
         const UNDERFLOW: f64 = 1e-305;
         (low - (f64::abs(low) * OUTWARD + UNDERFLOW), high + (f64::abs(high) * OUTWARD + UNDERFLOW))
     }
 
-    /// Where the product underflows, the sum that it widens was exact.
+    /// If the product underflows, the sum that it widens was exact.
     #[inline(always)]
     fn outward_sum(low: Self, high: Self) -> (Self, Self) {
         (low - f64::abs(low) * OUTWARD, high + f64::abs(high) * OUTWARD)
@@ -137,8 +138,8 @@ impl Float for f64 {
         is_plain.then(|| (less(less(a, b), less(c, d)), more(more(a, b), more(c, d))))
     }
 
-    /// Widens by two ulps: the `libm` functions are trusted to within one. `intervals_hold_the_true_results` tests
-    /// this.
+    /// Widens by two ulps: the errors of the `libm` functions are assumed to be within one.
+    /// `intervals_hold_the_true_results` tests this.
     #[inline]
     fn around(low: Self, high: Self) -> (Self, Self) {
         let (low, high) = Self::outward(low, high);
@@ -175,11 +176,10 @@ impl Float for f64 {
         libm::atan2(self, x)
     }
 
-    /// The standard library's function is a call unless this is compiled for processors that have an instruction for
-    /// it.
+    /// Avoids the standard library's function, which is a call unless the target processor has an instruction for it.
     #[inline(always)]
     fn floor(self) -> Self {
-        /// Adding this rounds to an integer. From there on, numbers are integers.
+        /// Adding this rounds to an integer. From `WHOLE` on, all numbers are integers.
         const TO_WHOLE: f64 = 1.5 / f64::EPSILON;
         const WHOLE: f64 = 0.25 / f64::EPSILON;
         if f64::abs(self) < WHOLE {
@@ -206,8 +206,8 @@ impl Float for f64 {
     }
 }
 
-/// The format `binary256` of IEEE 754: 237 bits, and exponents up to 2^262143, so that squares and fourth powers of a
-/// scene's numbers do not overflow.
+/// The format `binary256` of IEEE 754: 237 bits, and exponents up to 2^262143. Squares and fourth powers of a scene's
+/// numbers do not overflow.
 impl Float for f256 {
     const IS_LONG: bool = true;
     const INFINITY: Self = f256::INFINITY;
@@ -223,8 +223,7 @@ impl Float for f256 {
             return if self.is_nan() { f64::NAN } else { f64::INFINITY.copysign(sign(self)) };
         }
         let (_, exponent, (high, low)) = self.as_sign_exp_signif();
-        // Both halves are rounded to nearest, and so is their sum, in which the lower half is below the upper half's
-        // last bit.
+        // Both halves are rounded to nearest, and so is their sum. The lower half is below the upper half's last bit.
         let magnitude = libm::ldexp(high as f64, 128) + low as f64;
         libm::ldexp(magnitude, exponent).copysign(sign(self))
     }
@@ -240,8 +239,8 @@ impl Float for f256 {
         )
     }
 
-    /// Computes only the two products that the signs select, where no endpoint is 0: a product takes longer than the
-    /// tests of signs.
+    /// Computes only the two products that the signs select, if no endpoint is 0. A product takes longer than the tests
+    /// of signs.
     fn product_ends([one_low, one_high]: [Self; 2], [low, high]: [Self; 2]) -> Option<(Self, Self)> {
         let zero = Self::ZERO;
         let is_plain = |of: Self| of.is_finite() && !of.eq_zero();
@@ -249,15 +248,14 @@ impl Float for f256 {
             return None;
         }
         let (below, above) = if one_low > zero { (one_low, one_high) } else { (one_high, one_low) };
-        // With the first factor taken as positive, the sign of each endpoint of the second selects the endpoint of the
-        // first.
+        // With a positive first factor, the sign of each endpoint of the second selects the endpoint of the first.
         let smallest = if low > zero { below } else { above } * low;
         let largest = if high > zero { above } else { below } * high;
         Some(if one_low > zero { (smallest, largest) } else { (largest, smallest) })
     }
 
-    /// Widens by eight ulps: the crate's functions are trusted to within seven. `wide_intervals_hold_the_right_results`
-    /// tests this.
+    /// Widens by eight ulps: the errors of the crate's functions are assumed to be within seven.
+    /// `wide_intervals_hold_the_right_results` tests this.
     fn around(low: Self, high: Self) -> (Self, Self) {
         let steps = |of: Self| Self::from(8.0) * of.abs() * Self::EPSILON;
         ((low - steps(low)).next_down(), (high + steps(high)).next_up())
@@ -272,7 +270,7 @@ impl Float for f256 {
     }
 
     fn sines([one, other]: [Self; 2]) -> ([Self; 2], [Self; 2]) {
-        // The crate's combined function takes longer than the two separate ones.
+        // The crate's combined function takes longer than two separate ones.
         let (sin, cos) = (one.sin(), one.cos());
         if one == other {
             return ([sin; 2], [cos; 2]);

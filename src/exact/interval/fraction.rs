@@ -1,7 +1,7 @@
-//! Fractions of two numbers of 237 bits, which stay exact as long as they fit.
+//! Fractions of two 237-bit numbers, which stay exact as long as they fit.
 //!
-//! Where a ray passes exactly through the edge of a tile, or starts exactly on a second surface, no interval decides,
-//! however narrow it is. With the round numbers of scenes, such places are fractions of few digits. Their sums,
+//! If a ray goes exactly through the edge of a tile, or starts exactly on a second surface, no interval decides,
+//! however narrow it is. With the round numbers of scenes, such places are fractions with few digits. Their sums,
 //! products, quotients and roots of squares are computed without rounding, and intervals of them have no width.
 
 use super::float::Float;
@@ -17,13 +17,13 @@ const BITS: u32 = 237;
 #[derive(Clone, Copy, Debug)]
 pub struct Fraction {
     numerator: f256,
-    /// Positive; 1 for a number that is infinite, NaN or rounded.
+    /// Positive, and 1 for a number that is infinite, NaN or rounded.
     denominator: f256,
-    /// A bound on the difference from the true result; 0 for an exact result.
+    /// A bound of the difference from the exact result, or 0 for an exact number.
     error: f256,
 }
 
-/// 2^-230: far more than the relative error of a few operations.
+/// Returns 2^-230, far more than the relative error of a few operations.
 fn rounding() -> f256 {
     f256::from(power_of_two(-230))
 }
@@ -33,14 +33,14 @@ impl Fraction {
         Self { numerator: number, denominator: f256::ONE, error: f256::ZERO }
     }
 
-    /// Returns a rounded number; `size` is the sum of the magnitudes that it was computed from.
+    /// Returns a rounded number. `size` is the sum of the magnitudes that it was computed from.
     fn rounded(number: f256, size: f256) -> Self {
         let error = rounding() * size.abs();
         let error = if Float::is_finite(error) { error } else { f256::ZERO };
         Self { numerator: number, denominator: f256::ONE, error }
     }
 
-    /// Returns a quotient with a denominator other than 0. Where the quotient is a whole number, it is returned as one.
+    /// Returns a quotient with a nonzero denominator, as an integer if it is one.
     fn quotient(numerator: f256, denominator: f256) -> Self {
         let (numerator, denominator) =
             if denominator < f256::ZERO { (-numerator, -denominator) } else { (numerator, denominator) };
@@ -59,13 +59,13 @@ impl Fraction {
         if self.is_whole() { self.numerator } else { self.numerator / self.denominator }
     }
 
-    /// Returns the nearest numbers of 237 bits below and above, or the number itself.
+    /// Returns the nearest 237-bit numbers below and above, or the number itself.
     pub(super) fn neighbours(self) -> (f256, f256) {
         let value = self.value();
         if self.is_whole() { (value, value) } else { (value.next_down(), value.next_up()) }
     }
 
-    /// Returns the numerator and the positive denominator if the fraction is exact.
+    /// Returns the numerator and the positive denominator, if the fraction is exact.
     pub(crate) fn exactly(self) -> Option<[f256; 2]> {
         let is_exact = self.error.eq_zero() && self.is_plain();
         is_exact.then_some([self.numerator, self.denominator])
@@ -89,12 +89,12 @@ impl Fraction {
         Some(Self::quotient(sum(one, two)?, product(self.denominator, other.denominator)?))
     }
 
-    /// Returns a number that a function outside of IEEE 754 has returned for a rounded argument.
+    /// Returns the result of a function outside of IEEE 754 for a rounded argument.
     fn about(result: f256, argument: Self) -> Self {
         if argument.is_whole() {
             return Self::whole(result);
         }
-        // The slopes of these functions are at most the square of what they return, plus 1.
+        // The slopes of these functions are at most the square of the result, plus 1.
         let one = f256::ONE;
         let slope = (one + argument.value().abs()) * (one + result * result);
         Self::rounded(result, f256::from(1024.0) * slope)
@@ -120,7 +120,7 @@ fn product(one: f256, other: f256) -> Option<f256> {
 /// Returns a sum, if it is exact.
 fn sum(one: f256, other: f256) -> Option<f256> {
     let sum = one + other;
-    // The rounding error of a sum (Knuth).
+    // This is the rounding error of a sum (Knuth).
     let rest = sum - one;
     let error = (one - (sum - rest)) + (other - rest);
     (error.eq_zero() && Float::is_finite(sum)).then_some(sum)
@@ -132,7 +132,7 @@ impl PartialEq for Fraction {
     }
 }
 
-/// Compares the fractions themselves, without their errors. Fractions that differ by a few roundings may be found equal.
+/// Compares the fractions without their errors. Fractions that differ by a few roundings may compare equal.
 impl PartialOrd for Fraction {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         if self.denominator == other.denominator {
@@ -211,7 +211,7 @@ impl Div for Fraction {
 impl Float for Fraction {
     const IS_LONG: bool = true;
     const INFINITY: Self = Self::whole(f256::INFINITY);
-    // Pi is rounded by at most half of the last bit.
+    // Rounding changes pi by at most half of the last bit.
     const PI: Self = Self { error: f256::EPSILON, ..Self::whole(::f256::consts::PI) };
     const EPSILON: Self = Self::whole(f256::EPSILON);
 
@@ -239,7 +239,7 @@ impl Float for Fraction {
         Self::outward(low, high)
     }
 
-    /// Widens by what [`f256`] does, beside the errors.
+    /// Widens like [`f256`], in addition to the errors.
     fn around(low: Self, high: Self) -> (Self, Self) {
         let (low, high) = Self::outward(low, high);
         let (low, high) = <f256 as Float>::around(low.value().next_down(), high.value().next_up());
@@ -283,13 +283,13 @@ impl Float for Fraction {
     }
 
     fn ln(self) -> Self {
-        // A relative error of the argument is an absolute one of the logarithm.
+        // A relative error of the argument is an absolute error of the logarithm.
         let result = Float::ln(self.value());
         if self.is_whole() { Self::whole(result) } else { Self::rounded(result, f256::ONE + result.abs()) }
     }
 
     fn atan2(self, x: Self) -> Self {
-        // A relative error of a coordinate is at most an absolute one of the angle.
+        // A relative error of a coordinate is at most an absolute error of the angle.
         let angle = Float::atan2(self.value(), x.value());
         match self.is_whole() && x.is_whole() {
             true => Self::whole(angle),
@@ -302,7 +302,7 @@ impl Float for Fraction {
             return Self::whole(Float::floor(self.numerator));
         }
         let floor = Float::floor(self.value());
-        // The quotient may have been rounded to a whole number that is greater.
+        // The quotient may have been rounded up to an integer.
         let is_above = Self::whole(floor) > self;
         Self::whole(if is_above { floor - f256::ONE } else { floor })
     }
@@ -315,7 +315,7 @@ impl Float for Fraction {
         self.is_plain()
     }
 
-    /// Returns the number whose lower bound is the smaller one.
+    /// Returns the number with the smaller lower bound.
     fn min(self, other: Self) -> Self {
         if other.is_nan() || !self.is_nan() && Self::outward(self, self).0 < Self::outward(other, other).0 {
             self
@@ -324,7 +324,7 @@ impl Float for Fraction {
         }
     }
 
-    /// Returns the number whose upper bound is the greater one.
+    /// Returns the number with the greater upper bound.
     fn max(self, other: Self) -> Self {
         if other.is_nan() || !self.is_nan() && Self::outward(self, self).1 > Self::outward(other, other).1 {
             self
@@ -360,7 +360,7 @@ mod tests {
     #[test]
     fn fractions_of_few_digits_are_exact() {
         let n = Exact::constant;
-        // The place where a ray through row 58 of 120 hits the floor: at a tile's edge.
+        // A ray through row 58 of 120 hits the floor here, at the edge of a tile.
         let dir = n(58.0) / n(119.0) * n(6.0) - n(3.0);
         let place = n(6.0) - n(-3.0) / dir * n(-6.0) * n(-1.0);
         assert!(is_exactly(place, -232.0, 1.0), "{place:?}");
@@ -381,7 +381,7 @@ mod tests {
     proptest! {
         #![proptest_config(crate::properties())]
 
-        /// Fractions that no longer fit are enclosed as the numbers of 237 bits are.
+        /// Fractions that no longer fit are enclosed like 237-bit numbers.
         #[test]
         fn fractions_and_wide_numbers_enclose_the_same(a in -1e3..1e3, b in 0.1..1e3, c in 1e-6..1e3, power in -60..20) {
             fn term<N: Scalar>(a: f64, b: f64, c: f64, power: i32) -> N {

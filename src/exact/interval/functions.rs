@@ -1,4 +1,4 @@
-//! The functions of formulas over intervals.
+//! Functions of formulas over intervals.
 
 use super::{Float, Interval};
 use crate::scalar::{Scalar, apart_if, of_cubic};
@@ -7,8 +7,8 @@ use crate::spline::{Coefficient, Spline};
 impl<F: Float> Interval<F> {
     /// Returns whether the interval may contain `start` plus any multiple of 2π radians.
     fn holds_angle(self, start: F) -> bool {
-        // Roundings of half an EPSILON of the angles each: two in the difference, one each in π, the quotient, the
-        // product and the two sums. That is 3.5 EPSILON in all.
+        // The errors, in EPSILON of the angles, are half each for two roundings in the difference, and for one each in
+        // π, the quotient, the product and the two sums: 3.5 in total.
         let rounding = F::of(4.503_599_627_370_496) * F::EPSILON;
         let slack = rounding * (F::of(1.0) + self.low.abs() + self.high.abs());
         let turn = F::of(2.0) * F::PI;
@@ -29,15 +29,14 @@ impl<F: Float> Interval<F> {
         }
     }
 
-    /// Returns whether the interval is narrower than a bound in radians, and below 1e15 radians, where sines still mean
-    /// something; other intervals are taken to hold every angle.
+    /// Returns whether the interval is narrower than a bound in radians, and below 1e15 radians, where sines are still
+    /// meaningful. Other intervals count as containing all angles.
     fn is_narrower(self, than: F) -> bool {
         self.width() < than && self.magnitude() < F::of(1e15)
     }
 
     /// Tells whether a sine or cosine certainly has no turning point in the interval, by its derivative at the
-    /// endpoints: between two neighbouring turning points the derivative has one sign, and beyond them it has the
-    /// other.
+    /// endpoints. The derivative has one sign between two neighbouring turning points, and the other beyond them.
     #[inline]
     fn is_monotone(self, slopes: [F; 2]) -> bool {
         // The derivative is smaller than the distance from a turning point, and far above rounding.
@@ -46,8 +45,8 @@ impl<F: Float> Interval<F> {
         same && self.width() < F::of(3.0) && self.magnitude() < F::of(1e5)
     }
 
-    /// Returns the sine or cosine over the interval, from its values at the endpoints, and whether it has no turning point
-    /// there; it is 1 at `top` and -1 at `top - π` radians.
+    /// Returns the sine or cosine over the interval, given its values at the endpoints, and whether it is monotonic. It
+    /// is 1 at `top` and -1 at `top - π` radians.
     #[inline]
     fn sine_or_cosine(self, at_low: F, at_high: F, is_monotone: bool, top: F) -> Self {
         let one = F::of(1.0);
@@ -63,7 +62,7 @@ impl<F: Float> Interval<F> {
 }
 
 impl<F: Float> Interval<F> {
-    /// Returns the square, which is not below 0.
+    /// Returns the square, which is not negative.
     #[inline(always)]
     fn square(self) -> Self {
         let zero = F::of(0.0);
@@ -89,7 +88,7 @@ impl<F: Float> Interval<F> {
         let mut power = base;
         for _ in 1..exponent {
             let next = power * base;
-            // As after an underflow, whose numbers are also slow.
+            // This happens after an underflow, and such numbers are also slow.
             if next.low == power.low && next.high == power.high {
                 break;
             }
@@ -100,7 +99,7 @@ impl<F: Float> Interval<F> {
 }
 
 impl Interval {
-    /// Encloses the arc cosines, in radians, of the numbers of the interval that lie from -1 to 1.
+    /// Encloses the arc cosines, in radians, of the numbers of the interval in the range from -1 to 1.
     pub fn acos(self) -> Self {
         let [least, most] = [self.high, self.low].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
         let Self { low, high } = Self { low: least, high: most }.around_angle();
@@ -109,8 +108,8 @@ impl Interval {
 }
 
 impl<F: Float> Interval<F> {
-    /// Widens computed angles by twice the bound of other functions: the documentation of `libm` says that they are off by 2
-    /// ulps at most.
+    /// Widens computed angles by twice the bound of other functions, because the documentation of `libm` states an
+    /// error of up to 2 ulps.
     fn around_angle(self) -> Self {
         let Self { low, high } = Self::around(self.low, self.high);
         Self::around(low, high)
@@ -182,11 +181,11 @@ impl<F: Float> Scalar for Interval<F> {
 
     fn atan2(self, x: Self) -> Self {
         let (half_turn, zero) = (Self::pi(), F::of(0.0));
-        // The angle jumps from -π to π where y is 0 and x is negative.
+        // The angle jumps from -π to π at y = 0 and negative x.
         if !(self.low > zero || self.high < zero || x.low > zero) {
             return Self { low: -half_turn.high, high: half_turn.high };
         }
-        // Points with the same angle lie on a straight line, so the least and the greatest angle are at corners.
+        // Points with the same angle lie on a straight line, and so the minimum and maximum angles are at corners.
         let angles = [(self.low, x.low), (self.low, x.high), (self.high, x.low), (self.high, x.high)]
             .map(|(y, x)| Self::point(y.atan2(x)));
         angles.into_iter().reduce(Self::hull).map_or(Self::whole(), Self::around_angle)
@@ -196,7 +195,7 @@ impl<F: Float> Scalar for Interval<F> {
     fn sqrt(self) -> Self {
         apart_if!(F::IS_LONG, {
             let zero = F::of(0.0);
-            // Written so that a NaN stays a NaN.
+            // The comparison keeps a NaN.
             let root = |of: F| (if of < zero { zero } else { of }).sqrt();
             let root = Self::outward(root(self.low), root(self.high));
             Self { low: root.low.max(zero), high: root.high }
@@ -247,14 +246,14 @@ impl<F: Float> Scalar for Interval<F> {
         if exponent == 2 { apart_if!(F::IS_LONG, self.square()) } else { self.power(exponent) }
     }
 
-    /// Encloses the values of each piece of the spline that the interval overlaps, over their intersection.
+    /// Encloses the values of each overlapping piece of the spline, over its intersection with the interval.
     fn spline(self, spline: &Spline, order: usize) -> Self {
         let Interval { low, high } = self.coarse();
         let [first, last] = [low, high].map(|end| spline.piece(end));
         let part = |piece: usize| {
             let [low, high] = spline.ends(piece).map(F::of);
             let (low, high) = (self.low.max(low), self.high.min(high));
-            // The piece before may be met only by the rounding of an end.
+            // Only the rounding of an end may have selected the piece before.
             let y = Self { low: low.min(high), high: low.max(high) };
             of_cubic(y, spline, (piece, order), Self::of_coefficient)
         };

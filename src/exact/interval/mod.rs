@@ -1,6 +1,6 @@
-//! Interval arithmetic: every operation rounds outward, so that an interval encloses the true result.
+//! Interval arithmetic: each operation rounds outward, and so the resulting interval encloses the true result.
 //!
-//! The endpoints are `f64`, or have 237 bits where `f64` leaves a question open ([`Wide`]).
+//! The endpoints are `f64`, or have 237 bits if `f64` leaves a decision open ([`Wide`]).
 
 mod float;
 mod fraction;
@@ -22,10 +22,10 @@ pub struct Interval<F = f64> {
     pub high: F,
 }
 
-/// An interval whose endpoints have 237 bits.
+/// An interval with endpoints of 237 bits.
 pub type Wide = Interval<f256>;
 
-/// An interval whose endpoints are fractions.
+/// An interval with fractions as endpoints.
 pub type Fine = Interval<Fraction>;
 
 impl From<Interval> for Wide {
@@ -91,7 +91,7 @@ impl<F: Float> Interval<F> {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Converts to `f64`, rounded outward. Numbers that need no rounding stay as they are: a line parallel to an axis
+    /// Converts to `f64`, rounded outward. Numbers that need no rounding stay unchanged: a line parallel to an axis
     /// stays parallel to it.
     pub fn coarse(self) -> Interval {
         let (low, high) = (self.low.to_f64(), self.high.to_f64());
@@ -106,7 +106,7 @@ impl<F: Float> Interval<F> {
         Self { low: F::of(of.low), high: F::of(of.high) }
     }
 
-    /// Returns the greatest integer that is not greater than the numbers, where it is the same for all of them.
+    /// Returns the largest integer that is at most the numbers, if it is the same for all of them.
     pub fn certain_floor(self) -> Option<f64> {
         let floor = self.low.floor();
         (floor == self.high.floor() && floor.is_finite()).then(|| floor.to_f64())
@@ -122,14 +122,14 @@ impl<F: Float> Interval<F> {
         self.low.is_finite() && self.high.is_finite()
     }
 
-    /// Widens rounded endpoints so that they enclose the exact ones. NaN gives the whole line.
+    /// Widens rounded endpoints to enclose the exact ones. NaN gives the whole line.
     #[inline(always)]
     fn outward(low: F, high: F) -> Self {
         let (low, high) = F::outward(low, high);
         if low.is_nan() || high.is_nan() { Self::whole() } else { Self { low, high } }
     }
 
-    /// Widens the rounded endpoints of a sum or difference, which are 0 only where they are exact.
+    /// Widens the rounded endpoints of a sum or difference. They are 0 only if they are exact.
     #[inline(always)]
     fn outward_sum(low: F, high: F) -> Self {
         let (low, high) = F::outward_sum(low, high);
@@ -142,7 +142,7 @@ impl<F: Float> Interval<F> {
         if low.is_nan() || high.is_nan() { Self::whole() } else { Self { low, high } }
     }
 
-    /// Returns the minimum and the maximum of four numbers, NaN ignored.
+    /// Returns the minimum and the maximum of four numbers, ignoring NaN.
     #[inline(always)]
     fn extremes(a: F, b: F, c: F, d: F) -> (F, F) {
         (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
@@ -164,7 +164,8 @@ impl<F: Float> Sub for Interval<F> {
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
         apart_if!(F::IS_LONG, {
-            // The difference of a single number with itself is exactly 0: a product with something unbounded then stays 0.
+            // The difference of a single number with itself is exactly 0, and its product with an unbounded number
+            // stays 0.
             if self == other && self.low == self.high {
                 return Self::constant(0.0);
             }
@@ -201,7 +202,7 @@ impl<F: Float> Mul for Interval<F> {
 }
 
 impl<F: Float> Interval<F> {
-    /// Returns the product where an endpoint may be 0 or infinite. It is compiled once, and not into every formula.
+    /// Returns the product if an endpoint may be 0 or infinite. It is compiled once, and not into each formula.
     #[cold]
     #[inline(never)]
     fn unusual_product(self, other: Self) -> Self {
@@ -215,12 +216,12 @@ impl<F: Float> Interval<F> {
             self.high * other.low,
             self.high * other.high,
         );
-        // `min` and `max` above ignored 0 times infinity, where an endpoint at 0 meets an infinite one.
+        // `min` and `max` above ignored 0 times infinity, the product of an endpoint at 0 and an infinite one.
         let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
         if touches(self, other) || touches(other, self) {
             return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
         }
-        // Products of numbers that are not negative are not negative, so that their square roots are defined.
+        // Products of nonnegative numbers are not negative, and their square roots are defined.
         let zero = F::of(0.0);
         if self.low >= zero && other.low >= zero && low == zero {
             return Self { low, ..Self::outward(low, high) };
@@ -228,7 +229,7 @@ impl<F: Float> Interval<F> {
         Self::outward(low, high)
     }
 
-    /// Returns the quotient where the divisor may be 0 or infinite.
+    /// Returns the quotient if the divisor may be 0 or infinite.
     #[cold]
     #[inline(never)]
     fn unusual_quotient(self, other: Self) -> Self {

@@ -1,10 +1,10 @@
-//! Bounds of noise in a box: cell by cell where there are few.
+//! Bounds of noise in a box, cell by cell if there are few.
 
 use super::{Float, Interval};
 use crate::noise;
 use crate::scalar::{Scalar, of_noise};
 
-/// The number of cells along an axis that are looked at one by one.
+/// The number of cells along an axis from which on cells are not examined one by one.
 const MOST_CELLS: f64 = 2.0;
 
 /// Encloses the noise, or its derivative of these orders, at the points of a box.
@@ -15,7 +15,7 @@ pub(crate) fn enclosed<F: Float>(at: [Interval<F>; 3], orders: [u8; 3]) -> Inter
         false => Interval::whole(),
     };
     let [low, high] = [0, 1].map(|end| at.map(|along| along.bounds()[end].floor()));
-    // Written so that what is no number is anywhere.
+    // The comparison is false for NaN, which may be anywhere.
     let are_few = (0..3).all(|axis| high[axis] - low[axis] < MOST_CELLS);
     if !are_few {
         return anywhere;

@@ -1,4 +1,4 @@
-//! The numbers that coefficients of polynomials are, in three precisions.
+//! Coefficients of polynomials, in three precisions.
 
 use crate::double_double::DoubleDouble;
 use crate::interval::{Float, Interval};
@@ -22,7 +22,7 @@ pub trait Coefficient:
     /// most half of it.
     const ROUNDING: f64;
 
-    /// The size from which products may overflow on the way.
+    /// The magnitude from which on intermediate products may overflow.
     const LARGEST: f64 = f64::MAX;
 
     /// The endpoints of intervals around a coefficient.
@@ -31,11 +31,11 @@ pub trait Coefficient:
     /// Returns the number, rounded to `f64`.
     fn nearest(self) -> f64;
 
-    /// Encloses all numbers that differ from this one by no more than an error.
+    /// Encloses all numbers that differ from this one by at most `error`.
     fn bounds(self, error: f64) -> Interval<Self::End>;
 
-    /// Returns a number in an interval, and a bound on its distance from any other number there; infinite where the
-    /// interval is not bounded.
+    /// Returns a number in an interval, and a bound of its distance from the other numbers there, which is infinite for
+    /// an unbounded interval.
     fn about(bounds: Interval<Self::End>) -> (Self, f64);
 }
 
@@ -59,7 +59,7 @@ impl Coefficient for f64 {
 }
 
 impl Coefficient for DoubleDouble {
-    /// 2^-100: sums are rounded by 3 2^-106, and products by 7 2^-106 (Joldes et al. 2017).
+    /// 2^-100: the rounding error is 3 2^-106 for sums and 7 2^-106 for products (Joldes et al. 2017).
     const ROUNDING: f64 = f64::from_bits((1023 - 100) << 52);
 
     const LARGEST: f64 = 1e290;

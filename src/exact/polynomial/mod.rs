@@ -1,7 +1,7 @@
-//! Polynomials. A formula that does nothing but add, subtract and multiply is a polynomial along a line.
+//! Polynomials. A formula of sums, differences and products is a polynomial along a line.
 //!
-//! A polynomial stands for all polynomials that differ from it by no more than its error: a bound on the sum of the
-//! absolute errors of the coefficients. Where -1 <= s <= 1, this is also a bound on the error of the value.
+//! A polynomial stands for all polynomials that differ from it by at most its error: a bound of the sum of the absolute
+//! errors of the coefficients. For -1 <= s <= 1, this also bounds the error of the value.
 
 mod coefficient;
 
@@ -11,53 +11,52 @@ use crate::spline::Spline;
 pub use coefficient::Coefficient;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The number of coefficients that suffices for most polynomials: degrees up to 12. In `f64`, a polynomial of degree 12
-/// takes 128 bytes; compilers do not copy larger values inline.
+/// The number of coefficients that is enough for most polynomials, with degrees up to 12. In `f64`, a polynomial of
+/// degree 12 takes 128 bytes, and compilers do not copy larger values inline.
 pub const FEW: usize = 13;
 
-/// The number of coefficients that suffices for degrees up to 21.
+/// The number of coefficients for degrees up to 21.
 pub const SOME: usize = 22;
 
-/// The largest number of coefficients: the highest degree is 40. A product of a higher degree is unknown.
+/// The maximum number of coefficients, for degrees up to 40. A product of a higher degree is unknown.
 pub const MOST: usize = 41;
 
-/// A computed bound is multiplied by this factor, so that it stays a bound after up to eight rounded operations on
-/// numbers above 0.
+/// The factor that keeps a computed bound valid after up to eight rounded operations on positive numbers.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// A polynomial in s, of less than `N` coefficients that are of type `C`.
+/// A polynomial in s with at most `N` coefficients of type `C`.
 #[derive(Clone, Copy, Debug)]
 pub struct Polynomial<C = f64, const N: usize = FEW> {
-    /// The coefficients of the powers of s from 0 on; those above the degree are 0.
+    /// The coefficients of the powers of s from 0 on. Those above the degree are 0.
     coefficients: [C; N],
     degree: usize,
     /// A bound of the sum of the coefficients' absolute values.
     norm: f64,
-    /// A bound of the sum of the coefficients' absolute errors; infinite if nothing is known.
+    /// A bound of the sum of the coefficients' absolute errors, or infinity if nothing is known.
     error: f64,
 }
 
 impl<C: Coefficient, const N: usize> Polynomial<C, N> {
-    /// A polynomial about which nothing is known.
+    /// Returns a polynomial about which nothing is known.
     pub fn unknown() -> Self {
         Self { norm: f64::INFINITY, ..Self::about(0.0, f64::INFINITY) }
     }
 
-    /// Returns a constant that is known to within an error.
+    /// Returns a constant that is known up to an error.
     pub fn number(value: C, error: f64) -> Self {
         let mut coefficients = [C::from(0.0); N];
         coefficients[0] = value;
         Self { coefficients, degree: 0, norm: value.nearest().abs() * ROUNDED_UP, error }
     }
 
-    /// Returns a number that intervals enclose; unknown if they do not.
+    /// Returns a constant within bounds, or an unknown polynomial if they are infinite.
     pub fn enclosed(bounds: Interval<C::End>) -> Self {
         let (value, error) = C::about(bounds);
         if error < f64::INFINITY { Self::number(value, error) } else { Self::unknown() }
     }
 
-    /// Returns the place on a piece of a line: its lower end at s = -1, its upper end at s = 1. The result also stands
-    /// for places that are off by up to eight times the rounding of the ends.
+    /// Returns the place on a piece of a line: its lower end at s = -1, and its upper end at s = 1. The result also
+    /// stands for places that are off by up to eight times the rounding of the ends.
     pub fn along(piece: Interval) -> Self {
         let (low, high) = (C::from(0.5 * piece.low), C::from(0.5 * piece.high));
         let (middle, half) = (low + high, high - low);
@@ -72,13 +71,13 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
         &self.coefficients[..=self.degree]
     }
 
-    /// Returns a bound of the sum of the absolute errors of the coefficients; infinite if nothing is known of the
+    /// Returns a bound of the sum of the absolute errors of the coefficients, or infinity if nothing is known of the
     /// polynomial.
     pub fn error(&self) -> f64 {
         self.error
     }
 
-    /// Returns the degree; `None` if nothing is known of the polynomial.
+    /// Returns the degree, or `None` if nothing is known of the polynomial.
     pub fn degree(&self) -> Option<usize> {
         self.error.is_finite().then_some(self.degree)
     }
@@ -92,13 +91,13 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
         [value, slope]
     }
 
-    /// Returns a bound of the error of the value that [`at`](Self::at) computes, whatever rounding does.
+    /// Returns a bound of the error of the value from [`at`](Self::at), including rounding.
     pub fn error_at(&self) -> f64 {
         let steps = (self.degree + 1) as f64;
         ROUNDED_UP * (self.error + 2.0 * steps * C::ROUNDING * self.norm + steps * f64::MIN_POSITIVE)
     }
 
-    /// Returns bounds of a constant; `None` for any other polynomial.
+    /// Returns bounds of a constant, or `None` for any other polynomial.
     fn bounds(self) -> Option<Interval<C::End>> {
         let [at, error] = [self.coefficients[0].nearest(), self.error];
         let is_exact = error == 0.0 && C::from(at) == self.coefficients[0];
@@ -114,7 +113,7 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
     /// Adds a polynomial, times a sign that is 1 or -1.
     pub(crate) fn add_times(&mut self, other: &Self, sign: f64) {
         self.degree = self.degree.max(other.degree);
-        // Plain loops: where crates are compiled in many parts, iterators are calls.
+        // Plain loops are used because iterators are calls if crates are compiled in many parts.
         let others = other.coefficients();
         let sums = &mut self.coefficients[..others.len()];
         if sign < 0.0 {
@@ -145,19 +144,19 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
                 sums[index] = sums[index] + of * factors[index];
             }
         }
-        // A coefficient is a sum of as many products as the smaller degree has powers: each product and each sum is rounded
-        // by half a ROUNDING, or vanishes below MIN_POSITIVE.
+        // A coefficient is a sum of as many products as the polynomial of smaller degree has coefficients. Each product
+        // and each sum is rounded by half a ROUNDING, or underflows below MIN_POSITIVE.
         let terms = (short.degree + 1) as f64;
         let product = ROUNDED_UP * self.norm * other.norm + f64::MIN_POSITIVE;
         let handed_on = self.error * (other.norm + other.error) + self.norm * other.error;
         let error = ROUNDED_UP * (handed_on + terms * C::ROUNDING * product + f64::MIN_POSITIVE);
         let (largest, norm) = (self.norm.max(other.norm).max(product), norm(&coefficients[..=degree]));
-        // Written so that a NaN, of infinite coefficients or errors, is unknown.
+        // The comparisons are false for NaN, the result of infinite coefficients or errors.
         let is_known = error < f64::INFINITY && largest < C::LARGEST;
         Self { coefficients, degree, norm, error: if is_known { error } else { f64::INFINITY } }
     }
 
-    /// Becomes a constant.
+    /// Replaces the polynomial by a constant.
     pub(crate) fn set(&mut self, value: f64) {
         self.coefficients[..=self.degree].fill(C::from(0.0));
         self.coefficients[0] = C::from(value);
@@ -184,7 +183,7 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
     }
 }
 
-/// Returns a bound of the sum of the absolute values of up to [`MOST`] coefficients, which are rounded.
+/// Returns a bound of the sum of the absolute values of up to [`MOST`] rounded coefficients.
 fn norm<C: Coefficient>(of: &[C]) -> f64 {
     const ROUNDED_UP: f64 = 1.0 + 64.0 * f64::EPSILON;
     let mut sum = 0.0;
@@ -345,7 +344,7 @@ mod tests {
 
     type Plain = Polynomial<f64, FEW>;
 
-    /// Some operations on a place, in any number type.
+    /// Applies some operations to a place, in any number type.
     fn formula<N: Scalar>(at: N) -> N {
         let n = N::constant;
         let square = (at + n(0.3)) * at - n(1e-3);

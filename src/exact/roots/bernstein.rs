@@ -1,4 +1,5 @@
-//! Polynomials in Bernstein form: their coefficients there bound them, and their signs tell how many roots they have.
+//! Polynomials in Bernstein form. Their coefficients bound them, and the signs of the coefficients tell the number of
+//! roots.
 //!
 //! Source: G. Farin, Curves and Surfaces for CAGD, fifth edition, 2002, sections 5.1 and 6.4: the convex hull property,
 //! subdivision at the middle, and variation diminution.
@@ -8,7 +9,7 @@ use crate::dual::Dual;
 use crate::polynomial::{Coefficient, FEW, MOST, Polynomial};
 use crate::scalar::Scalar;
 
-/// Coefficients that are not above this many times their error are taken to be hidden by rounding.
+/// Coefficients of at most this many times their error count as hidden by rounding.
 const HIDDEN: f64 = 2.0;
 
 /// The binomial coefficients "n over k", by n and then by k.
@@ -36,43 +37,43 @@ pub struct Bernstein<C = f64, const N: usize = FEW> {
     error: f64,
 }
 
-/// What the coefficients tell of the roots on a piece, between its ends.
+/// The roots on a piece, between its ends, as far as the coefficients tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roots {
     /// There is no root.
     None,
-    /// There is one root, at which the sign changes, and the ends are not roots. The root is near this part of the
-    /// piece, from 0 to 1.
+    /// There is one root, where the sign changes, and the ends are not roots. The root is near this part of the piece,
+    /// from 0 to 1.
     One {
-        /// Whether the polynomial rises there.
+        /// Whether the polynomial rises at the root.
         rises: bool,
         /// The part of the piece.
         near: f64,
     },
-    /// The polynomial is monotone: there is at most one.
+    /// The polynomial is monotonic, and has at most one root.
     Monotone {
         /// Whether the polynomial rises.
         rises: bool,
-        /// The part of the piece near which the root would be, from 0 to 1.
+        /// The part of the piece, from 0 to 1, near which a root would be.
         near: f64,
     },
-    /// Nothing is known, but would be of shorter pieces.
+    /// Nothing is known, but shorter pieces would help.
     Unknown,
     /// Rounding hides the polynomial.
     Hidden,
 }
 
 impl<C: Coefficient, const N: usize> Bernstein<C, N> {
-    /// Converts a polynomial for the piece with -1 <= s <= 1; `None` if nothing is known of it.
+    /// Converts a polynomial for the piece with -1 <= s <= 1, or returns `None` if nothing is known of it.
     pub fn of(polynomial: &Polynomial<C, N>) -> Option<Self> {
-        // A number that is not finite makes this infinite, or NaN.
+        // A number that is not finite makes the error infinite or NaN.
         let is_known = polynomial.error() < f64::INFINITY;
         let (given, mut coefficients) = (polynomial.coefficients(), [C::from(0.0); N]);
         let degree = given.len() - 1;
         let mut norm = given[degree].nearest().abs();
         coefficients[0] = given[degree];
-        // Horner's scheme, in powers of x = (1 + s) / 2 and 1 - x: the product with s = x - (1 - x) is of the next degree,
-        // and so is a constant, times a power of 1 = x + (1 - x).
+        // This is Horner's scheme, in powers of x = (1 + s) / 2 and 1 - x. The product with s = x - (1 - x) is of the
+        // next degree, and so is a constant times a power of 1 = x + (1 - x).
         for step in 1..=degree {
             let (coefficient, binomials) = (given[degree - step], &BINOMIALS[step]);
             for index in (1..=step).rev() {
@@ -85,14 +86,14 @@ impl<C: Coefficient, const N: usize> Bernstein<C, N> {
         for index in 0..=degree {
             coefficients[index] = coefficients[index] / C::from(BINOMIALS[degree][index]);
         }
-        // A coefficient of degree n is a binomial times a mean of coefficients, and no larger than that of their norm. Each step
-        // rounds three times, by half a ROUNDING.
+        // A coefficient of degree n is a binomial times a mean of coefficients, and at most the norm. Each step rounds
+        // three times, by half a ROUNDING.
         let rounding = 4.0 * C::ROUNDING * (degree + 1) as f64 * norm;
         let error = 1.001 * (polynomial.error() + rounding);
         is_known.then_some(Self { coefficients, degree, error })
     }
 
-    /// Makes the form of these coefficients, which may be off by `error`; `None` where nothing is known of them.
+    /// Makes the form with these coefficients, which may be off by `error`. Returns `None` if that is not finite.
     pub(crate) fn known(coefficients: [C; N], degree: usize, error: f64) -> Option<Self> {
         (error < f64::INFINITY).then_some(Self { coefficients, degree, error })
     }
@@ -135,7 +136,7 @@ impl<C: Coefficient, const N: usize> Bernstein<C, N> {
         largest
     }
 
-    /// Tells what is known of the roots.
+    /// Returns the roots, as far as the coefficients tell.
     pub fn roots(&self) -> Roots {
         let (coefficients, error) = (self.coefficients(), self.error);
         let sign = |index: usize| {
@@ -160,8 +161,7 @@ impl<C: Coefficient, const N: usize> Bernstein<C, N> {
         while last_ones <= last && sign(last - last_ones) == end {
             last_ones += 1;
         }
-        // Where a single coefficient lies between coefficients of opposite signs, the signs change once, whichever sign
-        // it has.
+        // A single coefficient between coefficients of opposite signs causes one sign change, whichever sign it has.
         if start * end < 0 && first_ones + last_ones >= last {
             return Roots::One { rises, near };
         }
@@ -180,7 +180,7 @@ impl<C: Coefficient, const N: usize> Bernstein<C, N> {
 /// The error of the place near a root, as a fraction of the piece.
 const NEAR: f64 = 1e-9;
 
-/// The largest error of a known slope, as a fraction of it.
+/// The maximum error of a known slope, as a fraction of the slope.
 const STEEP: f64 = 1.0 / 262_144.0;
 
 /// A place near a root.
@@ -188,9 +188,9 @@ const STEEP: f64 = 1.0 / 262_144.0;
 pub struct NearRoot {
     /// The place, from 0 to 1 on the piece, or on the line.
     pub place: f64,
-    /// The slope there, as it is computed.
+    /// The computed slope there.
     pub slope: f64,
-    /// Whether that is certainly about the right slope.
+    /// Whether the slope is certainly approximately right.
     pub is_known: bool,
 }
 
@@ -202,8 +202,8 @@ impl<const N: usize> Bernstein<f64, N> {
         for index in 0..=n {
             scaled[index] = self.coefficients[index] * binomials[index];
         }
-        // The polynomial is y^n q(x/y) with y = 1 - x, and so is x^n q(y/x) from the other end; a step of Newton's method
-        // does not need the power.
+        // With y = 1 - x, the polynomial is y^n q(x/y), or x^n q(y/x) from the other end. A Newton step does not need
+        // the power.
         let at = |x: f64| {
             let (y, is_low) = (1.0 - x, x <= 0.5);
             let (own, other) = if is_low { (x, y) } else { (y, x) };
@@ -218,15 +218,15 @@ impl<const N: usize> Bernstein<f64, N> {
         let place = newton::root(|x| at(x).0, (0.0, 1.0), !rises, guess, NEAR);
         let (Dual { slope, .. }, other) = at(place);
         let slope = slope * Scalar::powi(other, n as i32);
-        // The slope is a mean of the differences of coefficients, times n.
+        // The slope is n times a mean of the differences of coefficients.
         let is_known = 2.0 * n as f64 * self.error <= STEEP * slope.abs();
         NearRoot { place, slope, is_known }
     }
 
-    /// Tells whether the polynomial is certainly not 0 on this part of the piece at either end.
+    /// Tells whether the polynomial is certainly nonzero within this part of the piece at either end.
     pub fn has_clear_ends(&self, part: f64) -> bool {
         let [start, end] = self.ends();
-        // The slope is a mean of the differences of coefficients, times n.
+        // The slope is n times a mean of the differences of coefficients.
         let falls_by = 2.0 * self.degree as f64 * self.largest() * part;
         start.abs().min(end.abs()) > self.error + 1.001 * falls_by
     }
@@ -237,7 +237,7 @@ mod tests {
     use super::*;
     use crate::interval::Interval;
 
-    /// Returns the form, from 0 to 1, of the polynomial with these roots that is above 0 far to the right.
+    /// Returns the form, from 0 to 1, of the polynomial with these roots that is positive far to the right.
     fn with_roots(roots: &[f64]) -> Bernstein {
         let place = Polynomial::<f64, FEW>::along(Interval { low: 0.0, high: 1.0 });
         let product = roots

@@ -1,10 +1,10 @@
-//! Bisection between two places where a predicate differs.
+//! Bisection between two places with different values of a predicate.
 //!
-//! Each evaluation gives one binary digit, whatever the function. Signs are compared, not taken from a product, which
-//! underflows; and bisection ends where no number lies between.
+//! Each evaluation gives one binary digit, whatever the function. Signs are compared directly, because products may
+//! underflow. Bisection ends if there is no number between the places.
 
-/// Returns the last place where the predicate is false and the first where it is true, between a `low` where it is
-/// false and a `high` where it is true: at most `tolerance` apart, or neighbouring numbers.
+/// Returns the last place where the predicate is false and the first where it is true. It is false at `low` and true at
+/// `high`. The two places are at most `tolerance` apart, or neighbouring numbers.
 pub fn bisect(is_true: impl Fn(f64) -> bool, (mut low, mut high): (f64, f64), tolerance: f64) -> (f64, f64) {
     while high - low > tolerance {
         let middle = 0.5 * (low + high);
@@ -20,7 +20,7 @@ pub fn bisect(is_true: impl Fn(f64) -> bool, (mut low, mut high): (f64, f64), to
     (low, high)
 }
 
-/// Returns the root between two places, to within the tolerance; the function is positive at the first if `falls`.
+/// Returns the root between two places, up to the tolerance. If `falls`, the function is positive at the first.
 pub fn root(f: impl Fn(f64) -> f64, ends: (f64, f64), falls: bool, tolerance: f64) -> f64 {
     let has_crossed = |t: f64| (f(t) >= 0.0) != falls;
     let (low, high) = bisect(has_crossed, ends, tolerance);

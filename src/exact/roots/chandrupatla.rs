@@ -1,13 +1,13 @@
-//! Inverse quadratic interpolation through the last three places where that can be trusted, bisection elsewhere.
+//! Inverse quadratic interpolation through the last three places where it is reliable, and bisection elsewhere.
 //!
 //! T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
-//! using derivatives" (1997). Among methods without derivatives, it takes few evaluations; where derivatives are
-//! available, Newton's method takes half as many.
+//! using derivatives" (1997). It takes few evaluations among methods without derivatives. With derivatives, Newton's
+//! method takes half as many.
 
-/// Returns the root between two places where the function's signs differ, to within the tolerance.
+/// Returns the root between two places with different signs of the function, up to the tolerance.
 pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> f64 {
     const MAX_STEPS: usize = 200;
-    // `a` is the last place, `b` the one on the other side of the root, `c` the one before.
+    // `a` is the last place, `b` the one on the other side of the root, and `c` the one before.
     let (mut a, mut b) = (low, high);
     let (mut at_a, mut at_b) = (f(a), f(b));
     let mut part = 0.5;

@@ -1,24 +1,24 @@
-//! Isolates the roots of a polynomial, in order, as far as the precision of its coefficients allows.
+//! Isolation of the roots of a polynomial, in order, as far as the precision of its coefficients allows.
 
 use super::bernstein::{Bernstein, Roots};
 use crate::polynomial::{Coefficient, Polynomial};
 
-/// A part of a polynomial's piece, by places from -1 to 1, that has a root or may have some.
+/// A part of a polynomial's piece, with ends from -1 to 1, that has a root or may have some.
 #[derive(Clone, Copy, Debug)]
 pub enum RootPart<C> {
     /// There is exactly one root.
     Root {
         /// The ends of the part.
         ends: [C; 2],
-        /// Whether the polynomial rises there.
+        /// Whether the polynomial rises at the root.
         rises: bool,
     },
     /// Rounding hides the roots.
     Hidden([C; 2]),
 }
 
-/// Visits the parts that have a root or may have some, in order, until the visitor takes one. `None` also where nothing
-/// is known of the polynomial.
+/// Visits the parts that have a root or may have some, in order, until the visitor returns a value. Also returns `None`
+/// if nothing is known of the polynomial.
 pub fn visit<C: Coefficient, const N: usize, R>(
     polynomial: &Polynomial<C, N>,
     visit: impl FnMut(RootPart<C>) -> Option<R>,
@@ -29,8 +29,8 @@ pub fn visit<C: Coefficient, const N: usize, R>(
     taken.or_else(|| search.flush())
 }
 
-/// Returns how often a piece is halved: somewhat more often than a polynomial with a double root can be, before rounding
-/// hides it.
+/// Returns the maximum number of halvings of a piece: slightly more than rounding allows for a polynomial with a double
+/// root.
 fn depth<C: Coefficient>() -> usize {
     let bits = 1023 - (C::ROUNDING.to_bits() >> 52) as usize;
     bits / 2 + 8
@@ -38,7 +38,7 @@ fn depth<C: Coefficient>() -> usize {
 
 struct Search<V, C> {
     visit: V,
-    /// A part that rounding hides, to which the next one may be added.
+    /// A hidden part that the next one may extend.
     hidden: Option<[C; 2]>,
 }
 
@@ -62,18 +62,17 @@ impl<C: Coefficient, R, V: FnMut(RootPart<C>) -> Option<R>> Search<V, C> {
         }
     }
 
-    /// Visits what is hidden.
+    /// Visits the hidden part.
     fn flush(&mut self) -> Option<R> {
         let ends = self.hidden.take()?;
         (self.visit)(RootPart::Hidden(ends))
     }
 }
 
-/// The largest number of steps of [`refined`]; a bracket that is only bisected has shrunk by 2^-240 then.
+/// The maximum number of steps of [`refined`]. By then, mere bisection has shrunk a bracket by 2^-240.
 const MAX_STEPS: usize = 240;
 
-/// Returns the only root between two places, by Newton's method in a bracket, and a bound of its error where the slope is
-/// about the same nearby.
+/// Returns the only root between two places, by Newton's method in a bracket.
 pub fn refined<C: Coefficient, const N: usize>(
     polynomial: &Polynomial<C, N>,
     [mut low, mut high]: [C; 2],
@@ -92,7 +91,7 @@ pub fn refined<C: Coefficient, const N: usize>(
             high = at;
         }
         let newton = at - value / slope;
-        // Written so that a NaN is outside.
+        // The comparisons are false for NaN.
         let next = if newton > low && newton < high { newton } else { half * (low + high) };
         if !(next > low && next < high) {
             break;
@@ -102,7 +101,7 @@ pub fn refined<C: Coefficient, const N: usize>(
     at
 }
 
-/// Returns places around the only root between two others, as near to it as rounding allows; the signs of the
+/// Returns places around the only root between two others, as close to it as rounding allows. The signs of the
 /// polynomial are certain at these places, unless they are the ends.
 pub fn enclosed<C: Coefficient, const N: usize>(
     polynomial: &Polynomial<C, N>,

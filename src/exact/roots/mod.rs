@@ -1,9 +1,9 @@
-//! Methods that find the first root of a function along a line, one per file, which `tabray chart` compares.
+//! Methods for the first root of a function along a line, one per file. `tabray chart` compares them.
 //!
-//! Scenes are traced with two of them. [`taylor`] finds the hits of shapes that are one formula, and decides where a
-//! ray grazes a surface of revolution, whose other hits come from quadrics (`revolution` of tabray-core); [`newton`]
-//! refines the roots of both. Other programs use the other methods; each file says where its method comes from and
-//! where it fails.
+//! Scenes use two of them. [`taylor`] finds the hits of shapes that are one formula, and decides whether a ray that
+//! grazes a surface of revolution hits it. The other hits of such surfaces come from quadrics (`revolution` of
+//! tabray-core). [`newton`] refines the roots of both. Other programs use the other methods. Each file tells the source
+//! of its method, and its weaknesses.
 
 pub mod bernstein;
 pub mod bisection;
@@ -28,12 +28,12 @@ use std::fmt;
 use std::ops::Range;
 use taylor::FunctionOnLine;
 
-/// A method that finds the first root.
+/// A method for the first root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Fixed steps, as on the course notes' page on procedural surfaces: `steps`.
     Steps,
-    /// This number of samples, and a refiner between the first two of different sign: `samples`.
+    /// This number of samples, and a refiner between the first two with different signs: `samples`.
     Samples(u32, Refiner),
     /// This number of samples, Newton's method, and the turning points between samples: `turning`.
     Turning(u32),
@@ -46,7 +46,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All methods that are compared.
+    /// All methods in the comparison.
     pub const ALL: [Self; 12] = [
         Self::Steps,
         Self::Samples(64, Refiner::Bisection3),
@@ -62,10 +62,10 @@ impl Method {
         Self::Taylor,
     ];
 
-    /// Returns the first root on the span of a line for which the distance `base + root` is in the range.
+    /// Returns the first root on the span of a line with a distance `base + root` in the range.
     ///
-    /// [`taylor`] divides the span in a way that does not depend on the range; the other methods search only the part
-    /// of the span that is in the range.
+    /// [`taylor`] divides the span in a way that does not depend on the range. The other methods search only the part
+    /// of the span in the range.
     ///
     /// If the line starts on the surface and leaves it to a side, the root at its start does not count. `shortest` is a
     /// few ulps of the largest numbers on the line.
@@ -94,8 +94,8 @@ impl Method {
         }
     }
 
-    /// Returns a bound of the error of a root that the method finds, in world units, apart from rounding errors divided
-    /// by the function's slope. `every_method_finds_a_plain_root_as_exactly_as_it_promises` tests this.
+    /// Returns a bound of the error of a root by this method, in world units, apart from rounding errors divided by the
+    /// function's slope. `every_method_finds_a_plain_root_as_exactly_as_it_promises` tests this.
     pub fn promise(self) -> f64 {
         match self {
             Self::Samples(_, Refiner::Bisection3) => 1e-3,
@@ -126,7 +126,7 @@ mod tests {
     use crate::roots::range::Side;
     use crate::scalar::Scalar;
 
-    /// Falls through 0 at the square root of 2, rises through 0 at 3.
+    /// Falls through 0 at the square root of 2, and rises through 0 at 3.
     struct Parabola;
 
     impl FunctionOnLine for Parabola {
@@ -135,7 +135,7 @@ mod tests {
         }
     }
 
-    /// Is below 0 only within 0.0005 of 2.
+    /// Is negative only within 0.0005 of 2.
     struct Notch;
 
     impl FunctionOnLine for Notch {

@@ -1,15 +1,14 @@
-//! Newton's method safeguarded by a bracket, for one function or for several at a time.
+//! Newton's method safeguarded by a bracket, for one function or for several at once.
 
 use crate::dual::Dual;
 use std::array::from_fn;
 
-/// The largest number of steps, after which the root is returned as found; a bracket that is only bisected has shrunk
-/// by 2^-100 then.
+/// The maximum number of steps. By then, mere bisection has shrunk a bracket by 2^-100.
 const MAX_STEPS: usize = 100;
 
-/// `N` functions that are evaluated together. A trait, as closures are not reliably inlined into kernels.
+/// `N` functions that are evaluated together. This is a trait because closures are not reliably inlined into kernels.
 pub trait Functions<const N: usize> {
-    /// Returns the value and the slope of each function, each at a place of its own.
+    /// Returns the value and the slope of each function, each at its own place.
     fn at(&self, places: [f64; N]) -> ([f64; N], [f64; N]);
 }
 
@@ -26,11 +25,11 @@ impl<F: Fn(f64) -> Dual> Functions<1> for F {
 pub struct Start<const N: usize> {
     /// The lower ends of the brackets.
     pub low: [f64; N],
-    /// The upper ends of the brackets, where the signs differ from those at the lower ends. Where an upper end is not
-    /// above the lower end, the guess is returned.
+    /// The upper ends of the brackets, with signs that differ from those at the lower ends. For an upper end that is
+    /// not above the lower end, the guess is returned.
     pub high: [f64; N],
-    /// 1 where the function falls across the bracket, -1 where it rises; 0 to take the sign from the slope at the
-    /// guess.
+    /// 1 for a function that falls across the bracket, -1 for one that rises, and 0 to take the sign from the slope at
+    /// the guess.
     pub falls: [f64; N],
     /// The initial guesses.
     pub guess: [f64; N],
@@ -51,8 +50,8 @@ pub fn root(
     roots(&f, Start { low: [low], high: [high], falls: [falls], guess: [guess], tolerance })[0]
 }
 
-/// Returns the root of each function in its bracket. Bisects a bracket where a step would leave it, and stops where a
-/// step is below the tolerance, or where quadratic convergence predicts that the next one will be.
+/// Returns the root of each function in its bracket. Bisects the bracket if a step would leave it. Stops if a step is
+/// below the tolerance, or if quadratic convergence predicts that for the next one.
 #[inline(always)]
 pub fn roots<const N: usize>(functions: &impl Functions<N>, start: Start<N>) -> [f64; N] {
     let Start { mut low, mut high, mut falls, guess: mut at, tolerance } = start;
@@ -67,7 +66,7 @@ pub fn roots<const N: usize>(functions: &impl Functions<N>, start: Start<N>) -> 
             let is_before = value * falling > 0.0;
             let (below, above) = if is_before { (here, high[lane]) } else { (low[lane], here) };
             let (next, middle) = (here - value / slope, 0.5 * (below + above));
-            // Written so that a NaN is outside.
+            // The comparisons are false for NaN.
             let is_inside = (next > below) & (next < above);
             let is_stuck = (middle == below) | (middle == above);
             let step = (next - here).abs();
@@ -95,7 +94,7 @@ pub fn roots<const N: usize>(functions: &impl Functions<N>, start: Start<N>) -> 
     at
 }
 
-/// Returns 1 or 0: flags as numbers are vectorized with the other numbers.
+/// Returns 1 or 0. Numbers as flags are vectorized with the other numbers.
 #[inline(always)]
 fn flag(is_so: bool) -> f64 {
     if is_so { 1.0 } else { 0.0 }

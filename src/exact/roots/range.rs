@@ -1,4 +1,4 @@
-//! Ranges of distances along a ray, and the sides of surfaces that it hits.
+//! Ranges of distances along a ray, and the sides of surfaces.
 
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Returns the side of a surface with this normal that is hit by a ray along `dir`.
+    /// Returns the side of a surface with this normal that a ray along `dir` hits.
     #[inline(always)]
     pub fn seen_along(dir: DVec3, normal: DVec3) -> Self {
         if dir.dot(normal) < 0.0 { Self::Outside } else { Self::Inside }
@@ -36,15 +36,15 @@ pub struct RayRange {
     pub near: f64,
     /// The upper bound: hits must be nearer.
     pub far: f64,
-    /// The side of the shape's own surface that the ray starts on and leaves, if it does: the origin itself is then not
-    /// a hit, whatever rounding says. Such rays are passed only to shapes that they may hit again from that side.
+    /// The side of the shape's own surface that the ray starts on and leaves, if it does. The origin itself is then not
+    /// a hit, regardless of rounding. Such rays are passed only to shapes that they may hit again from that side.
     pub origin_side: Option<Side>,
-    /// The largest distance of the ray's origin from the point that it stands for, in world units. 0 for a camera ray.
-    /// A bracket of a hit is certain only where the shape is farther from the origin than this.
+    /// The maximum distance between the ray's origin and the exact point that it was rounded from, in world units. It
+    /// is 0 for a camera ray. A bracket of a hit is certain only if the shape is farther from the origin than this.
     pub origin_error: f64,
 }
 
-/// The distance of a ray that hits nothing.
+/// The distance of a ray without a hit.
 pub const MISS: f64 = f64::INFINITY;
 
 impl RayRange {
@@ -52,11 +52,10 @@ impl RayRange {
     pub const ALL: RayRange =
         RayRange { near: 0.0, far: f64::INFINITY, origin_side: None, origin_error: 0.0 };
 
-    /// Returns the distance if it is in the range, else [`MISS`]; for NaN, too.
+    /// Returns the distance if it is in the range, or [`MISS`] if it is not, or is NaN.
     #[inline(always)]
     pub fn keep(&self, distance: f64) -> f64 {
-        // Two comparisons, one after the other: combined, they compile to a classification of the number, one lane at a
-        // time.
+        // A combined comparison would compile to a classification of the number, one lane at a time.
         let distance = if distance < self.far { distance } else { MISS };
         if self.near < distance { distance } else { MISS }
     }

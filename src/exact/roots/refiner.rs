@@ -1,5 +1,5 @@
-//! Sampling and refinement: the first two places along a line between which the function changes its sign, and how the
-//! root between them is refined.
+//! Sampling and refinement: the first two places along a line with different signs of the function, and refiners of the
+//! root between them.
 
 use super::taylor::{FunctionOnLine, SignChange};
 use super::{bisection, chandrupatla, newton};
@@ -8,7 +8,7 @@ use crate::roots::range::Side;
 use std::fmt;
 use std::ops::Range;
 
-/// A method that refines a root between two places where the function's signs differ.
+/// A method that refines a root between two places with different signs of the function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refiner {
     /// Bisection to 1/1000 of a world unit: `bisection`.
@@ -36,7 +36,7 @@ impl fmt::Display for Refiner {
 }
 
 impl Refiner {
-    /// Returns the root between two places; the function is positive at the first if `falls`.
+    /// Returns the root between two places. If `falls`, the function is positive at the first.
     pub(super) fn root(
         self,
         line: &impl FunctionOnLine,
@@ -58,9 +58,9 @@ impl Refiner {
     }
 }
 
-/// Returns the first two consecutive places between which the function's sign changes.
+/// Returns the first two consecutive places with different signs of the function.
 ///
-/// If the line leaves the surface, the side on which it starts is known, whatever the computed sign.
+/// If the line leaves the surface, the side of its start is known, regardless of the computed sign.
 pub(super) fn sign_change(
     line: &impl FunctionOnLine,
     mut places: impl Iterator<Item = f64>,
@@ -83,7 +83,7 @@ pub(super) fn value_and_slope(line: &impl FunctionOnLine, t: f64) -> (f64, f64) 
     (value, slope)
 }
 
-/// Returns the ends of `parts` equal parts of a span, both ends of the span included.
+/// Returns the ends of `parts` equal parts of a span, including both ends of the span.
 pub(super) fn evenly(span: &Range<f64>, parts: u32) -> impl Iterator<Item = f64> + use<> {
     let Range { start, end } = *span;
     let part = (end - start) / f64::from(parts);

@@ -1,7 +1,8 @@
-//! Equidistant samples over the part of the ray that is near the shape, then a refiner.
+//! Equidistant samples over the part of the ray near the shape, then a refiner.
 //!
-//! What most programs do; POV-Ray's `sor` and much course work. However many samples there are, a grazing ray is inside
-//! the surface for less than the distance between two of them, and its two roots are lost together; and where three
+//! Most programs work like this, such as POV-Ray's `sor` and much course work. With any number of samples, a grazing
+//! ray may be inside the surface for less than the distance between two samples, and its two roots are lost together.
+//! With three roots between two samples, the refiner may find the last one.
 //! roots lie between two samples, the refiner may find the last one.
 
 use super::refiner::{Refiner, evenly, sign_change};

@@ -1,8 +1,8 @@
 //! Steps of 0.1 until the function's sign changes, then bisection to 1e-6, both in world units.
 //!
-//! From the course notes' page on procedural surfaces. It steps over whatever is thinner than a step along the ray:
-//! silhouettes, thin discs, ripples; and far from the ray's origin, where 1e-6 is less than an ulp, bisection must be
-//! told to stop.
+//! From the course notes' page on procedural surfaces. The method skips details thinner than a step along the ray:
+//! silhouettes, thin discs, ripples. Far from the ray's origin, 1e-6 is less than an ulp, and bisection needs another
+//! stopping condition.
 
 use super::bisection;
 use super::refiner::sign_change;

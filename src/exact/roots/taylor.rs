@@ -1,14 +1,14 @@
 //! The first root of a function along a line, proven to be the first.
 //!
-//! A piece of the line is judged by the function's value and slope at its midpoint and by bounds of the curvature over
-//! the whole piece: Taylor's theorem of the second order, computed with [`Interval`]s, so that rounding is part of what
-//! is proven. Either the piece has no root, or the function is monotone there and the signs at its ends decide (then
-//! Newton's method refines the root), or what is left of the piece is cut in two. No step along the line is guessed, so
-//! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds are
-//! of the first order and shrink more slowly where a ray grazes.
+//! A piece of the line is examined by the function's value and slope at its midpoint, and by bounds of the curvature
+//! over the whole piece. This is Taylor's theorem of second order, computed with [`Interval`]s, and so the proof
+//! includes rounding. There are three cases: the piece has no root; the function is monotonic, the signs at the ends
+//! decide, and Newton's method refines the root; or the rest of the piece is cut in two. No step along the line is
+//! guessed, and so no root is skipped. D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), uses
+//! bounds of first order, which shrink more slowly for grazing rays.
 //!
-//! If the function is a polynomial, the signs of its [`bernstein`](super::bernstein) coefficients are judged instead, on
-//! shorter and shorter pieces.
+//! If the function is a polynomial, the signs of its [`bernstein`](super::bernstein) coefficients are examined instead,
+//! on shorter and shorter pieces.
 
 mod function;
 mod polynomial;
@@ -28,45 +28,45 @@ use std::ops::Range;
 pub struct FirstRoot {
     /// The first root.
     pub root: Option<f64>,
-    /// Whether bounds in `f64` prove that every line that this one may have been rounded from has its first root there,
-    /// or has none.
+    /// Whether bounds in `f64` prove this first root, or that there is none, for all lines that may have been rounded
+    /// to this one.
     pub is_certain: bool,
 }
 
-/// The largest number of pieces that are judged before the proof is given up; only the wildest functions take more.
+/// The maximum number of examined pieces before the proof is given up. Only the wildest functions take more.
 pub const MAX_PIECES: usize = 16_384;
 
-/// After this many pieces, a piece on which the function has no value is not cut any more.
+/// After this many pieces, a piece where the bounds of values are infinite is not cut further.
 const MANY_PIECES: usize = 512;
 
-/// After this many pieces, a piece on which plain values are beyond all `f64` numbers is not cut any more.
+/// After this many pieces, a piece where plain values exceed the range of `f64` is not cut further.
 const SOME_PIECES: usize = 16;
 
-/// The largest number of pieces that are left to [`undecided`](FunctionOnLine::undecided) in one search, which takes up
-/// to 0.1 ms for each. Only a line that is rounded by more than the size of a shape has more such pieces; it has no
-/// root beyond them.
+/// The maximum number of pieces that one search passes to [`undecided`](FunctionOnLine::undecided), which takes up to
+/// 0.1 ms for each. Only a line with a rounding error larger than a shape has more such pieces, and its search ends
+/// there.
 const MAX_UNDECIDED: usize = 256;
 
-/// A piece is not cut if its bounds are below this many times the rounding error of one evaluation: the part of the
-/// bounds that shrinks with the length of the piece is at most three times the part that does not.
+/// A piece is not cut if its bounds are below this many times the rounding error of one evaluation. The part of the
+/// bounds that shrinks with the length of the piece is then at most three times the part that does not.
 const HIDDEN: f64 = 4.0;
 
 /// The capacity of the stack of pieces. A cut leaves pieces of at most half the length, and pieces of a few ulps are
-/// not cut, so that at most some 53 pieces wait.
+/// not cut. At most about 53 pieces thus wait.
 const STACK_SIZE: usize = 64;
 
-/// Returns the first root on a stretch of a line for which the distance `base + root` is in the range.
+/// Returns the first root on a stretch of a line with a distance `base + root` in the range.
 ///
-/// The stretch is divided in a way that does not depend on the range, so that a root is the same in every range that
+/// The stretch is divided in a way that does not depend on the range. A root is thus the same in each range that
 /// contains it.
 ///
-/// If the line starts on the surface, the range tells the side that it leaves to, and the root at its start does not
-/// count: only a root where the function falls counts if it leaves to the outside, and only one where it rises if it
-/// leaves to the inside.
+/// If the line starts on the surface, the range gives the side that it leaves to, and the root at its start does not
+/// count. For a line that leaves to the outside, only roots where the function falls count, and to the inside, only
+/// roots where it rises.
 ///
-/// Pieces that are not longer than `shortest` are not cut: a few ulps of the largest numbers on the line.
+/// Pieces of at most `shortest`, a few ulps of the largest numbers on the line, are not cut.
 ///
-/// What bounds in `f64` do not decide is left to [`undecided`](FunctionOnLine::undecided).
+/// Pieces that bounds in `f64` do not decide are passed to [`undecided`](FunctionOnLine::undecided).
 pub fn first_root(
     line: &impl FunctionOnLine,
     stretch: &Stretch,
@@ -77,8 +77,8 @@ pub fn first_root(
     first_root_within(line, stretch, base, range, shortest, &mut MAX_PIECES.clone())
 }
 
-/// Finds the same root as [`first_root`]. Subtracts the pieces that it judges from `pieces`, and cuts no more when none
-/// are left.
+/// Finds the same root as [`first_root`]. Subtracts the number of examined pieces from `pieces`, and stops cutting when
+/// it is 0.
 pub fn first_root_within(
     line: &impl FunctionOnLine,
     stretch: &Stretch,
@@ -91,7 +91,7 @@ pub fn first_root_within(
     if !(start <= end && start.is_finite() && end.is_finite()) {
         return FirstRoot { root: None, is_certain: true };
     }
-    // Outside of `inner`, the line may have passed the ends; inside, it is certainly between them.
+    // Inside of `inner`, the line is certainly between the ends. Outside, it may be beyond them.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let mut search = Search {
         line,
@@ -123,7 +123,7 @@ pub fn first_root_within(
     FirstRoot { root, is_certain: search.is_certain }
 }
 
-/// Two places between which the sign of a function changes.
+/// Two places with different signs of a function.
 #[derive(Clone, Copy, Debug)]
 pub struct SignChange {
     /// The first place.
@@ -134,11 +134,12 @@ pub struct SignChange {
     pub rises: bool,
 }
 
-/// How often the bracket of a root is made four times as wide until the function has certain signs at both ends.
+/// The maximum number of times that the bracket of a root is widened by a factor of 4, to find certain signs at both
+/// ends.
 const WIDENINGS: usize = 8;
 
-/// Returns two places around a certain root, at least `width` from it. Every line that this one may have been rounded
-/// from crosses 0 between them. `None` where bounds in `f64` do not prove that.
+/// Returns two places around a certain root, at least `width` from it. All lines that may have been rounded to this one
+/// cross 0 between them. Returns `None` if bounds in `f64` do not prove that.
 pub fn bracket(line: &impl FunctionOnLine, root: f64, mut width: f64) -> Option<SignChange> {
     let value = |t: f64| line.at(Interval::<f64>::constant(t));
     for _ in 0..WIDENINGS {
@@ -156,17 +157,17 @@ pub fn bracket(line: &impl FunctionOnLine, root: f64, mut width: f64) -> Option<
 struct Search<'l, L> {
     line: &'l L,
     start: f64,
-    /// Where the line is certainly between its ends.
+    /// The part where the line is certainly between its ends.
     inner: Range<f64>,
     base: f64,
     range: &'l RayRange,
-    /// Pieces of this length are not cut.
+    /// Pieces of at most this length are not cut.
     shortest: f64,
     pieces: &'l mut usize,
-    /// The number of pieces that bounds did not decide so far.
+    /// The number of undecided pieces so far.
     undecided: usize,
     is_certain: bool,
-    /// A piece on which rounding hides a polynomial, to which the next one may be added.
+    /// A piece where rounding hides a polynomial, and which the next one may extend.
     hidden: Option<(f64, f64)>,
 }
 
@@ -220,17 +221,17 @@ impl<L: FunctionOnLine> Search<'_, L> {
         self.range.near < distance && distance < self.range.far
     }
 
-    /// Tells whether a root at which the function rises, or falls, counts. It does not count if the ray leaves the
-    /// surface to that side.
+    /// Tells whether a root counts where the function rises, or falls. It does not if the ray leaves the surface to
+    /// that side.
     fn counts(&self, rises: bool) -> bool {
         self.range.origin_side.is_none_or(|side| rises == (side == Side::Inside))
     }
 
-    /// Returns the first root where rounding hides whether the line is still between the ends: there, nothing is
+    /// Returns the first root where rounding hides whether the line is still between the ends. Such roots are not
     /// certain.
     fn at_an_end(&mut self, low: f64, high: f64) -> Option<f64> {
         let end = Interval { low, high };
-        // The first two are cheap for formulas whose values are not.
+        // The first two conditions are cheap, even for formulas with expensive values.
         if low >= high
             || self.line.is_left_out(end)
             || !self.line.at(end).has_zero()
@@ -251,7 +252,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
             return Judgement::Free;
         }
         let Some([slopes, curvature]) = self.line.slopes(piece) else { return Judgement::Free };
-        // Where these bounds suffice, those around the midpoint are not needed.
+        // If these bounds are enough, those around the midpoint are not needed.
         if L::VALUES_FIRST && curvature.is_bounded() && !slopes.has_zero() {
             return self.judge_monotone(low, high, slopes.low > 0.0, f64::NAN);
         }
@@ -259,7 +260,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         let half = (middle - low).max(high - middle).next_up();
         let around = Interval { low: -half, high: half };
         let Dual { value, slope } = self.line.at(Dual::variable(Interval::constant(middle)));
-        // Where values are beyond all f64 numbers, shorter pieces would not help; at a pole, they are not beside it.
+        // If values exceed the range of f64, shorter pieces would not help. Beside a pole, they do not exceed it.
         let place = |part: f64| low + part * (high - low);
         let is_beyond = |part: f64| !self.line.at(Interval::<f64>::constant(place(part))).is_bounded();
         let is_infinite = |part: f64| {
@@ -274,7 +275,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if value.has_zero() && has_no_value() {
             return self.undecided(low, high);
         }
-        // Taylor's theorem of the second order, or of the first where the curvature has no bound.
+        // This is Taylor's theorem of second order, or of first order if the curvature is unbounded.
         let (values, slopes) = if curvature.is_bounded() {
             let bend = curvature * around;
             (value + (slope + Interval::constant(0.5) * bend) * around, slope + bend)
@@ -283,14 +284,14 @@ impl<L: FunctionOnLine> Search<'_, L> {
             if !over.value.has_zero() || !over.slope.is_bounded() && self.line.is_broken(piece) {
                 return Judgement::Free;
             }
-            // At a jump, the bounds of a place are as wide as those of the piece: shorter pieces would not help.
+            // At a jump, the bounds at a place are as wide as those of the piece, and shorter pieces would not help.
             if value.has_zero() && over.value.is_bounded() && 2.0 * value.width() >= over.value.width() {
-                // Beside a jump past 0 there may be roots, however.
+                // However, there may be roots beside a jump past 0.
                 let jumps = self.line.is_broken(Interval::constant(middle));
                 let halves = Judgement::Open { left: (low, middle), right: (middle, high) };
                 return if jumps { halves } else { self.undecided(low, high) };
             }
-            // From one side of a pole to the other, a function that only rises falls.
+            // Across a pole, even a rising function falls.
             let slopes = if over.value.is_bounded() { over.slope } else { Interval::WHOLE };
             (value + over.slope * around, slopes)
         };
@@ -300,12 +301,12 @@ impl<L: FunctionOnLine> Search<'_, L> {
         if !slopes.has_zero() {
             return self.judge_monotone(low, high, slopes.low > 0.0, middle - value.low / slope.low);
         }
-        // The bounds are little more than rounding error: shorter pieces would not help.
+        // The bounds are little more than rounding error, and shorter pieces would not help.
         if value.is_bounded() && value.has_zero() && values.magnitude() <= HIDDEN * value.magnitude() {
             return self.undecided(low, high);
         }
-        // Right of the midpoint, |value| is above `away + slope u + curvature u²/2`, and left of it above its mirror
-        // image.
+        // On the right of the midpoint, |value| is at least `away + slope u + curvature u²/2`, and on the left at least
+        // its mirror image.
         let (away, slope, bend) = if value.low > 0.0 {
             (value.low, slope, curvature.low)
         } else {
@@ -322,7 +323,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// Judges a piece on which the function is monotone. The guess may be any number.
+    /// Examines a piece where the function is monotonic. The guess may be any number.
     fn judge_monotone(&mut self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
         if !self.counts(rises) {
             return Judgement::Free;
@@ -342,15 +343,15 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// Returns the root on a piece by Newton's method, from a guess that may be any number.
+    /// Returns the root on a piece by Newton's method. The guess may be any number.
     fn newton(&self, low: f64, high: f64, rises: bool, guess: f64) -> f64 {
         let guess = if low < guess && guess < high { guess } else { low + 0.5 * (high - low) };
         let line = |t| self.line.at(Dual::variable(t));
         newton::root(line, (low, high), !rises, guess, 0.5 * self.shortest)
     }
 
-    /// Judges a piece that is not cut any more: it has a root if the sign changes; it has none if it is so short that
-    /// only a jump or a pole makes its bounds contain 0.
+    /// Examines a piece that is not cut further. It has a root if the sign changes. It has none if it is so short that
+    /// its bounds only contain 0 because of a jump or a pole.
     fn judge_uncut(&mut self, low: f64, high: f64) -> Judgement {
         let piece = Interval { low, high };
         let over = self.line.at(piece);
@@ -384,7 +385,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         self.undecided(low, high)
     }
 
-    /// Judges a piece by what the line itself says of it.
+    /// Decides a piece by [`FunctionOnLine::undecided`].
     fn undecided(&mut self, low: f64, high: f64) -> Judgement {
         // A line that leaves the surface starts on it.
         if self.range.origin_side.is_some() && low == self.start {
@@ -395,7 +396,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
         self.is_certain = false;
         if self.line.wants_proof() {
-            // What is left is not cut any more.
+            // The remaining pieces are not cut further.
             *self.pieces = 0;
             return Judgement::Free;
         }
@@ -409,13 +410,13 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// Returns bounds of the value at a place, with its rounding error.
+    /// Returns bounds of the value at a place, including its rounding error.
     fn value(&self, t: f64) -> Interval {
         self.line.at(Interval::constant(t))
     }
 }
 
-/// Returns a u up to which `away + slope u + bend u²/2` certainly stays above 0, from u = 0 on.
+/// Returns a number up to which, from u = 0 on, `away + slope u + bend u²/2` is certainly positive.
 fn clear_up_to(away: f64, slope: f64, bend: f64) -> f64 {
     let [away, slope, bend] = [away, slope, bend].map(Interval::<f64>::constant);
     let two = Interval::constant(2.0);
@@ -424,7 +425,7 @@ fn clear_up_to(away: f64, slope: f64, bend: f64) -> f64 {
         return f64::INFINITY;
     }
     let root = discriminant.sqrt();
-    // Each root has two forms, of which the one that does not cancel is used.
+    // Each root has two forms. The code uses the one that does not cancel.
     if slope.low <= 0.0 {
         (two * away / (root - slope)).low.max(0.0)
     } else if bend.high < 0.0 {

@@ -1,9 +1,9 @@
 //! Sphere tracing: steps of the function's value divided by a bound of its slope, which cannot step past a root.
 //!
-//! J. C. Hart, "Sphere tracing" (1996); shaders with distance fields do this. Here the bound comes from interval
-//! arithmetic over the whole span; programs that ask the user for it, as POV-Ray does for isosurfaces, lose what they
-//! step over where the user's guess is too low. A step below 1e-6 counts as a hit: a ray that only comes near counts as
-//! a hit, too, and one that runs along the surface takes very many steps.
+//! J. C. Hart, "Sphere tracing" (1996), as used by shaders with distance fields. Here, the bound comes from interval
+//! arithmetic over the whole span. Programs that ask the user for it, like POV-Ray for isosurfaces, may step over
+//! surfaces if it is too low. A step below 1e-6 counts as a hit. A ray that only comes close thus counts as a hit, too,
+//! and a ray along the surface takes very many steps.
 
 use super::taylor::FunctionOnLine;
 use crate::dual::Dual;
@@ -11,10 +11,10 @@ use crate::interval::Interval;
 use crate::roots::range::Side;
 use std::ops::Range;
 
-/// The step that counts as a hit, in world units.
+/// The maximum step that counts as a hit, in world units.
 const NEAR: f64 = 1e-6;
 
-/// The number of steps after which a ray is given up.
+/// The number of steps after which the search gives up.
 const MAX_STEPS: usize = 10_000;
 
 pub fn first_root(line: &impl FunctionOnLine, span: Range<f64>, origin_side: Option<Side>) -> Option<f64> {
@@ -25,7 +25,7 @@ pub fn first_root(line: &impl FunctionOnLine, span: Range<f64>, origin_side: Opt
     }
     let is_outside = origin_side.map_or_else(|| line.at(span.start) >= 0.0, |side| side == Side::Outside);
     let away = |t: f64| if is_outside { line.at(t) } else { -line.at(t) };
-    // A line that starts on the surface has to move away from it first.
+    // A line that starts on the surface must first move away from it.
     let mut is_away = origin_side.is_none();
     let mut t = span.start;
     for _ in 0..MAX_STEPS {

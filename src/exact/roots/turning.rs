@@ -1,8 +1,7 @@
-//! Samples of the function and its slope: where the function may turn between two samples of the same sign, it is
-//! evaluated at the turning point, too.
+//! Samples of the function and its slope, and of possible turning points between two samples of the same sign.
 //!
-//! After the course notes' advice to look for the minimum between two samples. It finds single silhouettes, and loses
-//! what turns more than once between two samples: ripples and thin discs.
+//! This follows the course notes' advice to look for the minimum between two samples. It finds single silhouettes, but
+//! loses features that turn more than once between two samples: ripples and thin discs.
 
 use super::newton;
 use super::refiner::{Refiner, evenly, value_and_slope};
@@ -30,7 +29,7 @@ pub fn first_root(
         if has_crossed(value) {
             return refined(low, high);
         }
-        // The function approaches 0 at first, and moves away from it in the end.
+        // The function first approaches 0, and finally moves away from it.
         if (slope < 0.0) == is_outside && (slope_there > 0.0) == is_outside {
             let slope_and_bend = |t| {
                 let Jet { first, second, .. } = line.at(Jet::variable(t));

@@ -1,8 +1,8 @@
-//! Roots of polynomials with whole coefficients, exactly: Descartes' rule of signs and bisection.
+//! Exact roots of polynomials with integer coefficients, by Descartes' rule of signs and bisection.
 //!
-//! What [`bernstein`](super::bernstein) does with rounded coefficients is done with whole ones, so that no sign is open:
-//! each root is told from all others, however near they are, and a touch from a miss. A polynomial is first freed of its
-//! repeated factors, with which bisection would not end.
+//! This is the method of [`bernstein`](super::bernstein) with integers in place of rounded coefficients. No sign is
+//! undecided: roots are separated however close they are, and a touch is distinguished from a miss. A polynomial is
+//! first freed of its repeated factors, because bisection would not end with them.
 //!
 //! Source: B. Mourrain, F. Rouillier and M.-F. Roy, "Bernstein's basis and real root isolation" (2005); the greatest common
 //! divisor is that of W. S. Brown, "The subresultant PRS algorithm" (1978).
@@ -19,20 +19,20 @@ use crate::roots::bernstein::BINOMIALS;
 use dashu_int::IBig;
 use polynomial::sign;
 
-/// The number of halvings after which a root's enclosure is no longer narrowed, as a fraction of the whole piece.
+/// The maximum number of halvings that narrow a root's enclosure.
 const HALVINGS: usize = 128;
 
 /// A root of a polynomial.
 #[derive(Clone, Debug)]
 pub struct Root {
-    /// Bounds of the root, which have no other root between them: the root itself if they are equal.
+    /// Bounds of the root, without another root between them. If they are equal, they are the root itself.
     pub bounds: [Dyadic; 2],
-    /// Whether the polynomial rises there; `None` where its sign does not change.
+    /// Whether the polynomial rises at the root, or `None` if its sign does not change.
     pub rises: Option<bool>,
 }
 
 impl Root {
-    /// Encloses the root in numbers of 237 bits.
+    /// Encloses the root in 237-bit numbers.
     pub fn wide(&self) -> Wide {
         let [low, high] = &self.bounds;
         Wide { low: low.wide().low, high: high.wide().high }
@@ -46,7 +46,7 @@ impl Root {
 }
 
 impl Whole {
-    /// Returns the first root from `low` to `high` that is wanted. The polynomial 0 has none.
+    /// Returns the first wanted root from `low` to `high`. The polynomial 0 has none.
     pub fn first_root(&self, low: f64, high: f64, is_wanted: impl Fn(&Root) -> bool) -> Option<Root> {
         if self.is_zero() || low > high || !(high - low).is_finite() {
             return None;
@@ -77,7 +77,7 @@ impl Whole {
         self.sign_at(&root.bounds[0]) == 0
     }
 
-    /// Halves the bounds of a single root, which are no roots themselves.
+    /// Halves the bounds of a single root. The bounds are not roots themselves.
     fn narrowed(&self, [mut low, mut high]: [Dyadic; 2]) -> [Dyadic; 2] {
         let before = self.sign_at(&low);
         for _ in 0..HALVINGS {
@@ -91,11 +91,11 @@ impl Whole {
         [low, high]
     }
 
-    /// Makes a root of its bounds.
+    /// Makes a root from its bounds.
     fn root(&self, bounds: [Dyadic; 2]) -> Root {
         let [low, high] = &bounds;
         let (before, after) = if low == high {
-            // The first derivative that is not 0 tells the signs on both sides.
+            // The first nonzero derivative gives the signs on both sides.
             let (mut of, mut order) = (self.derivative(), 1);
             while of.sign_at(low) == 0 && of.degree() > 0 {
                 (of, order) = (of.derivative(), order + 1);
@@ -109,7 +109,7 @@ impl Whole {
     }
 }
 
-/// Where the only root of a piece is, as a part of the whole.
+/// The place of the only root of a piece, as a part of the whole.
 enum Place {
     At(Dyadic),
     Between(Dyadic, Dyadic),
@@ -137,7 +137,7 @@ impl Form {
             powers[0] += coefficient << (down * step);
         }
         let binomial = |n: usize, k: usize| IBig::from(BINOMIALS[n][k] as u64);
-        // A multiple of all binomials of the degree.
+        // This is a multiple of all binomials of the degree.
         let common = (1..=degree as u64 + 1).fold(1_u128, |common, of| {
             let of = u128::from(of);
             common / gcd(common, of) * of
@@ -153,15 +153,15 @@ impl Form {
         Self { coefficients: coefficients.collect() }
     }
 
-    /// Returns the number of changes of sign between the ends, from which one has zeros removed.
+    /// Returns the number of sign changes between the ends, ignoring zeros.
     fn changes(&self) -> usize {
         let mut signs = self.coefficients.iter().map(sign).filter(|sign| *sign != 0);
         let Some(mut last) = signs.next() else { return 0 };
         signs.map(|sign| usize::from(std::mem::replace(&mut last, sign) != sign)).sum()
     }
 
-    /// Visits the roots of a form from its start on, without its end, until one is taken. The form is that of the piece with
-    /// this start and this number of halvings.
+    /// Visits the roots of a form from its start on, without its end, until the visitor returns a value. The form is
+    /// that of the piece with this start and this number of halvings.
     fn visit<R>(
         &self,
         start: &Dyadic,
@@ -207,7 +207,7 @@ impl Form {
         [Self::new(lower), Self::new(upper)]
     }
 
-    /// Makes a form of coefficients, without the powers of two that all of them have.
+    /// Makes a form from coefficients, without their common powers of two.
     fn new(mut coefficients: Vec<IBig>) -> Self {
         let zeros = coefficients.iter().filter_map(|of| of.trailing_zeros()).min().unwrap_or(0);
         coefficients.iter_mut().for_each(|of| *of >>= zeros);

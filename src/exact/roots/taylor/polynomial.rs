@@ -1,19 +1,19 @@
-//! The search for the first root where a function is a polynomial: by the signs of its Bernstein coefficients, on shorter and
-//! shorter pieces.
+//! The search for the first root of a polynomial, by the signs of its Bernstein coefficients on shorter and shorter
+//! pieces.
 
 use super::{FunctionOnLine, Judgement, Search};
 use crate::interval::Interval;
 use crate::roots::bernstein::{Bernstein, NearRoot, Roots};
 use std::ops::Range;
 
-/// The part of a piece on either side of a place near a root in which the root certainly is.
+/// The part of a piece, on either side of a place near a root, that certainly contains the root.
 const BESIDE: f64 = 1e-6;
 
-/// A polynomial is expanded once more on a piece where that makes its error smaller than this fraction.
+/// A polynomial is expanded again on a piece if that reduces its error to less than this fraction.
 const SMALLER: f64 = 0.25;
 
 impl<L: FunctionOnLine> Search<'_, L> {
-    /// Returns the first root on a piece on which the function is a polynomial.
+    /// Returns the first root on a piece where the function is a polynomial.
     pub(super) fn expand<const N: usize>(&mut self, low: f64, high: f64) -> Option<f64> {
         match self.line.form::<N>(Interval { low, high }) {
             Some(form) => self.on_a_polynomial(low, high, &form).or_else(|| self.reveal()),
@@ -21,7 +21,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// Returns the first root on a piece on which the function is a polynomial, or adds to what is [hidden](Self::reveal).
+    /// Returns the first root on a piece where the function is a polynomial, or extends the [hidden](Self::reveal)
+    /// piece.
     fn on_a_polynomial<const N: usize>(
         &mut self,
         low: f64,
@@ -29,8 +30,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         form: &Bernstein<f64, N>,
     ) -> Option<f64> {
         let is_given_up = self.line.wants_proof() && !self.is_certain;
-        // A hidden piece is judged together with all hidden pieces next to it, wherever the range begins or ends, so
-        // that the root is the same for every range.
+        // A hidden piece is decided together with all adjacent hidden pieces, regardless of the ends of the range. The
+        // root is thus the same for each range.
         let is_beyond = self.base + low >= self.range.far && self.hidden.is_none();
         if is_given_up || is_beyond {
             return None;
@@ -89,7 +90,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
                 self.judge_monotone(low, high, rises, low + near * (high - low))
             }
         };
-        // On its piece still, so that the same pieces are left out where the range begins or ends beside it.
+        // Clamping to the piece omits the same pieces regardless of the ends of the range.
         let Judgement::Root(root) = judgement else { return None };
         let root = self.line.polished(root).clamp(low, high);
         self.is_in_range(root).then_some(root)
@@ -105,8 +106,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// Adds a piece to what rounding hides, or judges what was hidden before, if that is not next to it. A line that leaves a
-    /// surface is on it at its start, and not on what follows.
+    /// Adds a piece to the hidden one, or decides the hidden one if the two are not adjacent. A line that leaves a
+    /// surface is on it at its start, but not on the next pieces.
     fn hide(&mut self, low: f64, high: f64) -> Option<f64> {
         match self.hidden {
             Some((start, end)) if end == low && (start != self.start || self.range.origin_side.is_none()) => {
@@ -121,7 +122,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// Returns the first root on what is hidden.
+    /// Returns the first root on the hidden piece.
     fn reveal(&mut self) -> Option<f64> {
         let (low, high) = self.hidden.take()?;
         match self.undecided(low, high) {

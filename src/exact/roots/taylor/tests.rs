@@ -37,7 +37,7 @@ fn a_touch_is_a_root_and_no_way_in() {
     assert_eq!(first(&Cubic, 1.5..2.9, None), None);
 }
 
-/// Is rounded by as much as it waves; counts the pieces that bounds do not decide.
+/// Has a rounding error as large as its waves, and counts the undecided pieces.
 #[derive(Default)]
 struct Hidden(Cell<usize>);
 
@@ -85,7 +85,7 @@ fn kinks_and_jumps_are_met_and_poles_are_not() {
     assert_eq!(first(&Broken, 3.3..9.0, None), None);
 }
 
-/// The difference of two values, which are both beyond all numbers from 2.2 on.
+/// The difference of two values that both exceed the range of numbers from 2.2 on.
 struct Overflowing;
 
 impl FunctionOnLine for Overflowing {
@@ -103,7 +103,7 @@ fn values_beyond_all_numbers_end_a_search_soon() {
     assert!(!found.is_certain && MAX_PIECES - left < 128, "{found:?} after {} pieces", MAX_PIECES - left);
 }
 
-/// The polynomial with these roots, which falls at the first one; isolated by its coefficients or by bounds.
+/// The polynomial with these roots, falling at the first one. Its roots are isolated by coefficients or by bounds.
 struct Product {
     roots: Vec<f64>,
     by_coefficients: bool,
@@ -142,7 +142,7 @@ fn coefficients_find_the_roots_that_bounds_find() {
         // The line starts on the surface in some cases.
         let start = if case % 3 == 0 { roots[0].max(0.0) } else { 0.0 };
         let sides = [None, Some(Side::Outside), Some(Side::Inside)];
-        // Which side a line is on where it touches the surface is not a question for a line that leaves it.
+        // A line that leaves the surface has no defined side where it touches the surface again.
         for origin_side in sides.into_iter().take(if case % 4 == 1 { 1 } else { 3 }) {
             let by = |by_coefficients| {
                 first(&Product { roots: roots.clone(), by_coefficients }, start..9.0, origin_side)

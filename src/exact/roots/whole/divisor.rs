@@ -1,4 +1,4 @@
-//! The greatest common divisor of a polynomial and its derivative: the factors that it has more than once.
+//! The greatest common divisor of a polynomial and its derivative, which contains its repeated factors.
 
 use super::polynomial::Whole;
 use dashu_int::ops::{Abs, DivRem, Gcd};
@@ -8,7 +8,7 @@ use dashu_int::{IBig, UBig};
 const PRIME: u64 = (1 << 61) - 1;
 
 impl Whole {
-    /// Returns the polynomial that has the same roots, each of them once.
+    /// Returns the polynomial with the same roots, all of them simple.
     pub(super) fn without_repeated_factors(&self) -> Self {
         if self.degree() < 2 || self.has_no_repeated_factor() {
             return self.clone();
@@ -17,11 +17,11 @@ impl Whole {
         self.divided(&divisor).unwrap_or_else(|| self.clone())
     }
 
-    /// Tells whether a polynomial has certainly no repeated factor, by its remainders of the division by a prime.
+    /// Tells whether a polynomial certainly has no repeated factor, by arithmetic modulo a prime.
     pub fn has_no_repeated_factor(&self) -> bool {
         let remainders = |of: &Self| of.coefficients.iter().map(remainder).collect::<Vec<_>>();
         let (mut one, mut other) = (remainders(self), remainders(&self.derivative()));
-        // With another degree, it tells nothing.
+        // A lower degree modulo the prime is inconclusive.
         if one.last() == Some(&0) || other.last() == Some(&0) {
             return false;
         }
@@ -47,7 +47,7 @@ impl Whole {
         true
     }
 
-    /// Divides by what all coefficients have in common.
+    /// Divides by the common divisor of the coefficients.
     pub(super) fn primitive(&self) -> Self {
         let content = self.coefficients.iter().fold(UBig::ZERO, |content, of| {
             let of = of.unsigned_abs_clone();
@@ -66,7 +66,7 @@ impl Whole {
         Self::new(self.coefficients.iter().map(|of| of / &content).collect())
     }
 
-    /// Returns the greatest common divisor with a polynomial of no higher degree.
+    /// Returns the greatest common divisor with a polynomial of at most the same degree.
     pub fn divisor(&self, other: Self) -> Self {
         let (mut one, mut other) = (self.clone(), other);
         let (mut scale, mut height) = (IBig::ONE, IBig::ONE);
@@ -97,8 +97,8 @@ impl Whole {
         &self.coefficients[self.degree()]
     }
 
-    /// Returns the remainder of the division by another polynomial, times the power of its leading coefficient that makes it
-    /// whole.
+    /// Returns the remainder of the division by another polynomial, times a power of its leading coefficient, which
+    /// makes it integer.
     fn remainder(&self, other: &Self) -> Self {
         let (mut rest, lead) = (self.coefficients.clone(), other.leading());
         for shift in (0..=self.degree() - other.degree()).rev() {
@@ -112,7 +112,7 @@ impl Whole {
         Self::new(rest)
     }
 
-    /// Returns the quotient by another polynomial, if its coefficients are whole numbers and no remainder is left.
+    /// Returns the quotient by another polynomial, if its coefficients are integers and the remainder is 0.
     pub fn divided(&self, other: &Self) -> Option<Self> {
         if self.degree() < other.degree() || other.is_zero() {
             return None;
@@ -155,7 +155,7 @@ fn power(mut of: u64, mut exponent: u64) -> u64 {
     result
 }
 
-/// The magnitude of a whole number.
+/// The magnitude of an integer.
 trait Magnitude {
     fn unsigned_abs_clone(&self) -> UBig;
 }

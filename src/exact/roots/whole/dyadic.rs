@@ -1,14 +1,14 @@
-//! Whole numbers times powers of two.
+//! Integers times powers of two.
 
 use crate::interval::Wide;
 use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 use f256::f256;
 
-/// The whole number `digits` times 2 to the power `exponent`.
+/// The integer `digits` times 2 to the power `exponent`.
 #[derive(Clone, Debug)]
 pub struct Dyadic {
-    /// The whole number.
+    /// The integer.
     pub digits: IBig,
     /// The power of two.
     pub exponent: i64,
@@ -32,7 +32,7 @@ impl From<f64> for Dyadic {
 }
 
 impl Dyadic {
-    /// Makes a number, of as few digits as it has.
+    /// Makes a number, with odd digits unless it is 0.
     pub fn new(mut digits: IBig, mut exponent: i64) -> Self {
         match digits.trailing_zeros() {
             None => exponent = 0,
@@ -44,7 +44,7 @@ impl Dyadic {
         Self { digits, exponent }
     }
 
-    /// Returns the number with the other sign.
+    /// Returns the number with the opposite sign.
     pub fn negated(&self) -> Self {
         Self { digits: -self.digits.clone(), exponent: self.exponent }
     }
@@ -61,13 +61,13 @@ impl Dyadic {
         Self::new(&self.digits * &other.digits, self.exponent + other.exponent)
     }
 
-    /// Returns the number midway to another one.
+    /// Returns the midpoint of this and another number.
     pub fn middle(&self, other: &Self) -> Self {
         let sum = self.plus(other);
         Self::new(sum.digits, sum.exponent - 1)
     }
 
-    /// Encloses the number in numbers of 237 bits.
+    /// Encloses the number in 237-bit numbers.
     pub fn wide(&self) -> Wide {
         let length = self.digits.bit_len() as i64;
         let less = (length - 236).max(0);
@@ -104,7 +104,7 @@ fn scaled(of: f256, exponent: i64) -> f256 {
     of
 }
 
-/// Returns the number that is nearest to an `f256`, which is exact.
+/// Converts an `f256` exactly.
 impl From<f256> for Dyadic {
     fn from(value: f256) -> Self {
         let (sign, exponent, (high, low)) = value.as_sign_exp_signif();

@@ -1,17 +1,17 @@
-//! Polynomials with whole coefficients.
+//! Polynomials with integer coefficients.
 
 use super::dyadic::Dyadic;
 use dashu_int::{IBig, Sign};
 
-/// A polynomial with whole coefficients.
+/// A polynomial with integer coefficients.
 #[derive(Clone, Debug)]
 pub struct Whole {
-    /// The coefficients of the powers from 0 on. The last one is not 0, but for the polynomial 0.
+    /// The coefficients of the powers from 0 on. The last one is nonzero, except for the polynomial 0.
     pub(super) coefficients: Vec<IBig>,
 }
 
 impl Whole {
-    /// Makes a polynomial of the coefficients of the powers from 0 on.
+    /// Makes a polynomial from the coefficients of the powers from 0 on.
     pub fn new(mut coefficients: Vec<IBig>) -> Self {
         while coefficients.len() > 1 && coefficients.last().is_some_and(IBig::is_zero) {
             coefficients.pop();
@@ -24,12 +24,12 @@ impl Whole {
         &self.coefficients
     }
 
-    /// Returns the degree; 0 for the polynomial 0.
+    /// Returns the degree, or 0 for the polynomial 0.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
 
-    /// Returns whether the polynomial is 0 everywhere.
+    /// Returns whether this is the polynomial 0.
     pub fn is_zero(&self) -> bool {
         self.coefficients.iter().all(IBig::is_zero)
     }
@@ -54,7 +54,7 @@ impl Whole {
     }
 }
 
-/// Returns 1, 0 or -1.
+/// Returns the sign of an integer: 1, 0 or -1.
 pub(super) fn sign(of: &IBig) -> i32 {
     match of.sign() {
         _ if of.is_zero() => 0,
