@@ -1,4 +1,4 @@
-//! Writes a model as text: as the notes' program dumps it, or as a scene that loads again.
+//! Writes a model as text: like the notes' program, or as a scene that can be loaded again.
 
 use crate::syntax::Syntax;
 use std::collections::HashMap;
@@ -9,8 +9,8 @@ use tabray_core::scene::model::Model;
 use tabray_core::scene::store::Record;
 use tabray_core::scene::value::Datum;
 
-/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal.
-/// Textures, shaders and backgrounds are not in it.
+/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures, shaders and
+/// backgrounds are omitted.
 pub fn notes(model: &Model) -> String {
     let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
     let mut memory = None;
@@ -28,11 +28,11 @@ fn notes_block(args: &Args) -> String {
     format!("{before}{:<12} {}{after_name}\n{lines}{after}", args.entity.dump_name, args.name)
 }
 
-/// Returns a scene, in either syntax, that loads to the identical model: every number to its last bit, the entities in
-/// their order, and only the attributes that were given.
+/// Returns a scene, in either syntax, that loads to the identical model. It has all digits of each number, the entities
+/// in their order, and only the attributes that were given.
 pub fn scene(model: &Model, syntax: Syntax) -> String {
     let entities = in_order(model);
-    // TOML needs an array of tables where two entities have the same title.
+    // TOML needs an array of tables if two entities have the same title.
     let mut counts: HashMap<_, usize> = HashMap::new();
     if syntax == Syntax::Toml {
         entities
@@ -51,7 +51,7 @@ pub fn scene(model: &Model, syntax: Syntax) -> String {
     text
 }
 
-/// Returns an entity of such a scene. `repeated` is true if another entity of its type has the same name.
+/// Returns an entity of such a scene. `repeated` tells whether another entity of its type has the same name.
 pub fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
     let (kind, name) = (args.entity.name, syntax.key(&args.name));
     let width = args.given().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! A TextMate grammar of the notes' syntax, generated from the tables: editors colour scenes with it.
+//! A TextMate grammar of the notes' syntax, generated from the tables, for colouring scenes in editors.
 
 use crate::registry::Registry;
 use serde::Serialize;
@@ -8,13 +8,13 @@ use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::Type;
 
-/// Matches the position at which a word ends.
+/// Matches the end of a word.
 const END: &str = r"(?=[\s{}]|$)";
 /// Matches a word in quotes that ends on its line.
 const QUOTED: &str = r#""(?:[^"\\]|\\.)*(?:"|(?<!\\)$)"#;
-/// Matches the beginning of a word in quotes that a `\` at the end of the line continues on the next.
+/// Matches the beginning of a quoted word that continues on the next line after a `\`.
 const CONTINUED: &str = r#""(?=(?:[^"\\]|\\.)*\\$)"#;
-/// Matches a word without quotes, which does not begin a comment or a quoted word.
+/// Matches a word without quotes that does not begin a comment.
 const BARE: &str = r#"[^\s{}#"][^\s{}]*"#;
 const NUMBER: &str = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?";
 
@@ -28,18 +28,18 @@ const KEYWORD: &str = "keyword.control.tabray";
 const IN_QUOTES: &str = "string.quoted.double.tabray";
 const WORD: &str = "string.unquoted.tabray";
 
-/// A grammar, as editors read it from a `.tmLanguage.json`.
+/// A grammar, in the format of a `.tmLanguage.json`.
 ///
-/// It is a list of rules for each entity type. Wherever a word can begin, some rule takes the whole word, so that no
-/// rule matches in the middle of a word.
+/// It has rules for each entity type. Wherever a word can begin, some rule matches the whole word, and so no rule
+/// matches in the middle of a word.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Grammar {
-    /// The extensions of the files that the grammar is for.
+    /// The extensions of the grammar's files.
     pub file_types: [&'static str; 1],
     /// The name of the language in editors.
     pub name: &'static str,
-    /// The rules for text outside entities.
+    /// The rules for text outside of entities.
     pub patterns: Vec<Rule>,
     /// The rules that others include, by name.
     pub repository: BTreeMap<&'static str, Rule>,
@@ -47,12 +47,11 @@ pub struct Grammar {
     pub scope_name: &'static str,
 }
 
-/// A rule: a pattern, and the scope that the matched text gets, by which a theme colours it. Fields that a rule does
-/// not need are left out.
+/// A rule: a pattern, and the scope of the matched text, which a theme colours. Unused fields are omitted.
 #[derive(Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Rule {
-    /// The pattern at which the match begins; it ends at `end`, and `patterns` apply to the text between.
+    /// The pattern at which the match begins. It ends at `end`, and `patterns` apply to the text between.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub begin: Option<String>,
     /// The scopes of the capture groups of `begin`, by number.
@@ -64,10 +63,10 @@ pub struct Rule {
     /// The scopes of the capture groups of `end`, by number.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub end_captures: BTreeMap<&'static str, Scope>,
-    /// The name of the rule, behind a `#`, that is used instead of this one.
+    /// The name of the rule to use in place of this one, after a `#`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub include: Option<String>,
-    /// The pattern to match, within a line.
+    /// The pattern to match within a line.
     #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
     /// The scope of the matched text.
@@ -90,7 +89,7 @@ impl Rule {
         Self { pattern: Some(pattern.into()), name, ..Self::default() }
     }
 
-    /// Refers to the rule of this name in the repository.
+    /// Refers to the rule with this name in the repository.
     fn include(rule: &str) -> Self {
         Self { include: Some(format!("#{rule}")), ..Self::default() }
     }
@@ -125,7 +124,7 @@ pub fn of(registry: &Registry) -> Grammar {
     }
 }
 
-/// Matches a word in quotes on several lines.
+/// Matches a quoted word on several lines.
 fn continued_word() -> Rule {
     Rule {
         begin: Some(CONTINUED.to_owned()),
@@ -142,7 +141,7 @@ fn entity_rule(entity: &'static Entity) -> Rule {
     within(&one_of(names), Some(TYPE), entity.attributes().map(|attribute| attribute_rule(entity, attribute)))
 }
 
-/// Matches an entity whose type matches `begin`; between its braces, applies these rules and those for any other word.
+/// Matches an entity whose type matches `begin`. Between its braces, applies these rules and those for any other word.
 fn within(begin: &str, scope: Option<&'static str>, attributes: impl Iterator<Item = Rule>) -> Rule {
     let comment = || iter::once(Rule::include("comment-line"));
     let rest = ["any-number", "quoted-word", "continued-word", "bare-word"].map(Rule::include);
@@ -156,14 +155,14 @@ fn within(begin: &str, scope: Option<&'static str>, attributes: impl Iterator<It
     Rule {
         begin: Some(format!("({begin}){END}")),
         begin_captures: captures(scope.as_slice()),
-        // The position right after the closing brace.
+        // This is the position right after the closing brace.
         end: Some(r"(?<=\})".to_owned()),
         patterns: comment().chain([name, body]).collect(),
         ..Rule::default()
     }
 }
 
-/// Returns the rules of what is no entity: named numbers, files and what is repeated, to which these rules apply again.
+/// Returns the rules for other items: named numbers, included files, and `repeat`, with these rules nested in it.
 fn computed(all: Vec<Rule>) -> [(&'static str, Rule); 3] {
     let named = |keyword| format!(r"({keyword})\s+({QUOTED}|{BARE}){END}");
     let rest = ["any-number", "quoted-word", "bare-word"].map(Rule::include);
@@ -195,7 +194,7 @@ fn computed(all: Vec<Rule>) -> [(&'static str, Rule); 3] {
     [("let", number), ("include", file), ("repeat", rounds)]
 }
 
-/// Matches an attribute. Numbers are recognised on their own; any other value may look like anything, even like an
+/// Matches an attribute. Numbers are recognised on their own. Other values may look like anything, even like an
 /// attribute.
 fn attribute_rule(entity: &'static Entity, attribute: &'static dyn Attribute) -> Rule {
     let names = iter::once(attribute.name()).chain(attribute.aliases().iter().copied());
@@ -209,7 +208,7 @@ fn attribute_rule(entity: &'static Entity, attribute: &'static dyn Attribute) ->
             return Rule {
                 begin: Some(begin),
                 begin_captures: captures(&[ATTRIBUTE]),
-                // As the reader does, up to the next attribute.
+                // Like the reader, this ends at the next attribute.
                 end: Some(format!("(?=[{{}}]|(?:{}){END})", one_of(others))),
                 patterns: vec![
                     Rule::include("comment-line"),
@@ -246,7 +245,7 @@ fn captures(scopes: &[&'static str]) -> BTreeMap<&'static str, Scope> {
     iter::zip(["1", "2", "3", "4"], scopes.iter().map(|name| Scope { name })).collect()
 }
 
-/// Returns a pattern that matches any of these names, which consist of letters, digits and `_`.
+/// Returns a pattern that matches any of these names of letters, digits and `_`.
 fn one_of<'n>(names: impl Iterator<Item = &'n str>) -> String {
     names.collect::<Vec<_>>().join("|")
 }

@@ -1,49 +1,49 @@
-//! A JSON Schema: what its keywords hold.
+//! A JSON Schema with its keywords.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
 use tabray_core::scene::value::Datum;
 
-/// A schema (draft 2020-12), or a part of one. It has only the keywords that scenes need, in the order in which they
-/// are written; keywords without a value are left out.
+/// A schema (draft 2020-12), or a part of one. It has only the keywords that scenes need, in the order of the output.
+/// Keywords without a value are omitted.
 #[derive(Clone, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Schema {
-    /// The schema dialect, given only at the top level.
+    /// The schema dialect, only given at the top level.
     #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
     pub language: Option<&'static str>,
-    /// The schema of fields that are not in `properties`.
+    /// The schema of fields outside of `properties`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub additional_properties: Option<AdditionalProperties>,
-    /// The path of a schema that stands for this one.
+    /// The path of a schema to use in place of this one.
     #[serde(rename = "$ref", skip_serializing_if = "Option::is_none")]
     pub reference: Option<String>,
     /// Schemas that must all match.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub all_of: Vec<Schema>,
-    /// The value if none is given.
+    /// The default value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub default: Option<Constant>,
     /// The description that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// The schema that must match where `condition` does not.
+    /// The schema that must match if `condition` does not.
     #[serde(rename = "else", skip_serializing_if = "Option::is_none")]
     pub otherwise: Option<Box<Schema>>,
     /// All allowed values.
     #[serde(rename = "enum", skip_serializing_if = "Option::is_none")]
     pub choices: Option<Vec<Constant>>,
-    /// The number that all numbers must be above.
+    /// The exclusive lower bound of numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exclusive_minimum: Option<f64>,
-    /// The schema that decides whether `then` or `otherwise` must match. If these name the error, editors show it once,
-    /// in its place. Of alternatives (`anyOf`, `oneOf`), editors only show, for the whole entity, that none matches.
+    /// The schema that decides whether `then` or `otherwise` must match. Editors show an error in these once, in its
+    /// place. With alternatives (`anyOf`, `oneOf`), they would only show, for the whole entity, that none matches.
     #[serde(rename = "if", skip_serializing_if = "Option::is_none")]
     pub condition: Option<Box<Schema>>,
     /// The schema of each value of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub items: Option<Box<Schema>>,
-    /// The greatest number.
+    /// The maximum number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub maximum: Option<f64>,
     /// The maximum number of values of an array.
@@ -52,7 +52,7 @@ pub struct Schema {
     /// The maximum number of fields of an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_properties: Option<usize>,
-    /// The least number.
+    /// The minimum number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub minimum: Option<f64>,
     /// The minimum number of values of an array.
@@ -67,22 +67,22 @@ pub struct Schema {
     /// The schemas of an object's fields.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub properties: Option<BTreeMap<&'static str, Schema>>,
-    /// The fields that an object must have.
+    /// The required fields of an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub required: Option<Vec<&'static str>>,
-    /// The schema that must match where `condition` does.
+    /// The schema that must match if `condition` does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub then: Option<Box<Schema>>,
     /// The title that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<&'static str>,
-    /// The types that the value may have: `object`, `array`, `string`, `number`, `integer` or `boolean`. The other
-    /// keywords hold for values of the types that they are about.
+    /// The allowed types of the value: `object`, `array`, `string`, `number`, `integer` or `boolean`. The other
+    /// keywords each apply to values of their types.
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
     pub types: Option<TypeKeyword>,
 }
 
-/// The value of the keyword `type`: the types that a value may have.
+/// The value of the keyword `type`: the allowed types of a value.
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
 pub enum TypeKeyword {
@@ -92,11 +92,11 @@ pub enum TypeKeyword {
     Any(Vec<&'static str>),
 }
 
-/// The value of the keyword `additionalProperties`: what fields that a schema does not name may hold.
+/// The value of the keyword `additionalProperties`: the allowed contents of fields that a schema does not name.
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
 pub enum AdditionalProperties {
-    /// Whether there may be such fields, with any values.
+    /// Whether such fields are allowed, with any values.
     Allowed(bool),
     /// Values that match this schema.
     Matching(Box<Schema>),
@@ -106,9 +106,9 @@ pub enum AdditionalProperties {
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
 pub enum Constant {
-    /// A whole number.
+    /// An integer.
     Whole(i64),
-    /// Several whole numbers.
+    /// Several integers.
     Wholes(Vec<i64>),
     /// A number.
     Number(f64),
@@ -121,7 +121,7 @@ pub enum Constant {
 }
 
 impl Constant {
-    /// Returns the values of an attribute, or `None` where it has none.
+    /// Returns the values of an attribute, or `None` if it has none.
     pub(crate) fn of(datum: &Datum) -> Option<Self> {
         Some(match datum {
             Datum::Whole(numbers) => match numbers[..] {
@@ -143,7 +143,7 @@ impl Constant {
                 choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
             }
             Datum::Truth(truth) => Self::Truth(*truth),
-            // No list of objects is a default.
+            // A list of objects cannot be a default.
             Datum::Objects(_) | Datum::Absent => return None,
         })
     }

@@ -1,5 +1,5 @@
-//! The scene language: from a scene's text to a [`Model`](tabray_core::scene::Model) and back, the documents generated
-//! from the tables of entity types, and what an [`editor`] asks about a scene.
+//! The scene language: reading a scene's text as a [`Model`](tabray_core::scene::Model), writing it back, documents
+//! generated from the tables of entity types, and answers for an [`editor`].
 //!
 //! ```
 //! use std::path::Path;
@@ -20,7 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Without any text, [`build`] makes a model. `cargo run -p tabray-lang --example scene` asks what a ray hits, too.
+//! [`build`] makes a model without any text. `cargo run -p tabray-lang --example scene` also asks for a ray's hit.
 
 pub mod dump;
 pub mod editor;
@@ -42,7 +42,7 @@ pub use syntax::Syntax;
 #[cfg(test)]
 use tabray_plugins as _;
 
-/// How properties are tested: cases that failed are kept below `tests/`.
+/// Returns the configuration of property tests. Failed cases are kept below `tests/`.
 #[cfg(test)]
 pub(crate) fn properties() -> proptest::prelude::ProptestConfig {
     use proptest::test_runner::{Config, FileFailurePersistence};

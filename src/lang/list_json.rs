@@ -1,6 +1,6 @@
-//! The tables for other programs, as JSON: the whole scene language. `docs/data/fields.csv` describes the same fields.
+//! The tables of the scene language as JSON, for other programs. `docs/data/fields.csv` describes the fields.
 //!
-//! Fields are declared in the order in which they are written.
+//! Fields are declared in the order of the output.
 
 use crate::reference::by_name;
 use crate::registry::Registry;
@@ -15,7 +15,7 @@ use tabray_core::scene::kind::Kind;
 use tabray_core::scene::profile::Profile;
 use tabray_core::scene::value::Type;
 
-/// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
+/// The version of the format. It increases if a field is removed or changes its meaning, but not if one is added.
 const VERSION: u32 = 1;
 
 /// The whole scene language.
@@ -27,14 +27,14 @@ pub struct Tables {
     pub profiles: Vec<Named>,
     /// The types of shader, sorted by name.
     pub shaders: Vec<Shader>,
-    /// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
+    /// The version of the format. It increases if a field is removed or changes its meaning, but not if one is added.
     pub version: u32,
 }
 
 /// An entity type.
 #[derive(Serialize)]
 pub struct Entity {
-    /// Other names that scenes may use.
+    /// Alternative names in scenes.
     pub aliases: &'static [&'static str],
     /// The type's attributes, in the order of the dump.
     pub attributes: Vec<Attribute>,
@@ -44,59 +44,58 @@ pub struct Entity {
     pub meaning: &'static str,
     /// The name in scenes.
     pub name: &'static str,
-    /// The groups of attributes from each of which a scene gives exactly one.
+    /// The groups of attributes. A scene gives exactly one attribute of each group.
     pub one_of: Vec<Group>,
 }
 
 /// An attribute.
 #[derive(Serialize)]
 pub struct Attribute {
-    /// Other names that scenes may use.
+    /// Alternative names in scenes.
     pub aliases: &'static [&'static str],
-    /// All allowed values of a choice; null for other types.
+    /// All allowed values of a choice, or null for other types.
     pub choices: Option<Vec<Named>>,
-    /// The numbers of values that the attribute may take: `[1, 3]` for one or three; empty for a list.
+    /// The allowed numbers of values: `[1, 3]` for one or three, or an empty array for a list.
     pub counts: &'static [usize],
-    /// The values where a scene gives none: one value, or several in an array; null where there is no default.
+    /// The default: one value, several in an array, or null.
     pub default: Option<Constant>,
-    /// The numbers of values that a list takes; null for other attributes.
+    /// The allowed numbers of values of a list, or null for other attributes.
     pub list: Option<ListOf>,
     /// The meaning, in a few words.
     pub meaning: &'static str,
-    /// The rule for the values, in words that end "it must be ...", or null.
+    /// The rule for the values, to follow "it must be", or null.
     pub must_be: Option<Cow<'static, str>>,
     /// The name in scenes.
     pub name: &'static str,
-    /// The least and the greatest number that makes a difference, such as an angle's within a full turn; null where there
-    /// are none.
+    /// The bounds of the effective values, such as a full turn for an angle, or null.
     pub period: Option<[f64; 2]>,
-    /// The least and the greatest number that each value may be; null where there are none.
+    /// The minimum and the maximum of each value, or null.
     pub range: Option<[f64; 2]>,
-    /// The kind of entity that a name refers to, also where it may stand for a choice; null for other types.
+    /// The kind of the entity that a name refers to, including a name in place of a choice, or null for other types.
     pub refers_to: Option<Kind>,
-    /// Whether a scene must give it.
+    /// Whether a scene must give the attribute.
     pub required: bool,
     /// `number`, `whole number`, `word`, `file`, `name`, `choice`, `formula`, `truth` or `rotation`.
     #[serde(rename = "type")]
     pub value_type: &'static str,
     /// The unit of the values, or null.
     pub unit: Option<&'static str>,
-    /// The variables of a formula; null for other types.
+    /// The variables of a formula, or null for other types.
     pub variables: Option<&'static [&'static str]>,
 }
 
-/// The numbers of values that a list takes.
+/// The allowed numbers of values of a list.
 #[derive(Serialize)]
 pub struct ListOf {
     /// The number of values in each group.
     pub group: usize,
-    /// The least number of groups.
+    /// The minimum number of groups.
     pub least: usize,
-    /// The most number of groups.
+    /// The maximum number of groups.
     pub most: usize,
 }
 
-/// Attributes from which a scene gives exactly one.
+/// A group of attributes. A scene gives exactly one of them.
 #[derive(Serialize)]
 pub struct Group {
     /// The noun for each of the attributes, with its article.
@@ -112,7 +111,7 @@ pub struct Named {
     pub meaning: &'static str,
     /// The name in scenes.
     pub name: &'static str,
-    /// The number by which scenes may choose the alternative, or null.
+    /// The number that scenes may use for the alternative, or null.
     pub number: Option<i64>,
 }
 
@@ -123,9 +122,9 @@ pub struct Shader {
     pub meaning: &'static str,
     /// The name in scenes.
     pub name: &'static str,
-    /// The number by which scenes may choose the shader on planes, or null.
+    /// The number that scenes may use for the shader on planes, or null.
     pub number_on_planes: Option<i64>,
-    /// The number by which scenes may choose the shader on spheres, or null.
+    /// The number that scenes may use for the shader on spheres, or null.
     pub number_on_spheres: Option<i64>,
 }
 

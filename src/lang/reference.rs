@@ -1,4 +1,4 @@
-//! The reference of the scene language: the meaning of its words, generated from the tables.
+//! The reference of the scene language: the meanings of its words, generated from the tables.
 
 use crate::registry::Registry;
 use crate::syntax::Syntax;
@@ -11,10 +11,10 @@ use tabray_core::scene::profile::Profile;
 use tabray_core::scene::value::Datum;
 use tabray_core::text;
 
-/// The part of the reference that is the same whatever entity types there are.
+/// The part of the reference that does not depend on the entity types.
 const LANGUAGE: &str = include_str!("language.md");
 
-// The page is in `docs/`, and a link to it in this folder, which packages of this crate resolve.
+// The page is in `docs/`. A link to it in this folder makes it a part of packages of this crate.
 const _: () =
     assert!(LANGUAGE.len() > 1000, "language.md is no link: clone with `git -c core.symlinks=true clone`");
 
@@ -42,8 +42,8 @@ pub fn markdown(registry: &Registry) -> String {
     text
 }
 
-/// Returns a page, with its name, for each word of the language: each entity type and profile. The
-/// pages lie in `snapshots/reference` and refer to the images beside that folder.
+/// Returns a page, with its name, for each word of the language: each entity type and profile. The pages are in
+/// `snapshots/reference`, and refer to the images beside that folder.
 pub fn pages(registry: &Registry) -> impl Iterator<Item = (&'static str, String)> {
     let entities = registry.iter().map(|entity| {
         let (name, kind) = (entity.name, text::capital(&entity.kind().to_string()));
@@ -66,7 +66,7 @@ struct Word {
     meaning: &'static str,
     /// The file and line that register the word.
     place: String,
-    /// Further details: lines of Markdown, of which the first is empty.
+    /// Further details: lines of Markdown, beginning with an empty one.
     details: String,
 }
 
@@ -95,7 +95,7 @@ impl Word {
     }
 }
 
-/// Tells the numbers of a word in some places, if it has any.
+/// Lists the numbers of a word with their places, if it has any.
 fn numbers(numbers: &[(Option<i64>, &str)]) -> String {
     let told = numbers.iter().filter_map(|(number, place)| Some(format!("{}{place}", (*number)?)));
     let told = told.collect::<Vec<_>>().join(" and ");

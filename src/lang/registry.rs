@@ -21,8 +21,8 @@ impl Registry {
     /// Returns the entity types that the plugins registered, sorted by name.
     ///
     /// # Errors
-    /// If plugins contradict each other: one line for each name that is registered twice, with both source positions,
-    /// and for each profile that is not a formula.
+    /// Fails if plugins contradict each other, with one line for each name that is registered twice, including both
+    /// source positions, and for each profile that is not a formula.
     pub fn get() -> Result<&'static Registry, &'static str> {
         static REGISTRY: LazyLock<Result<Registry, String>> = LazyLock::new(|| {
             let choices = [
@@ -43,7 +43,8 @@ impl Registry {
     /// Makes a registry of these entity types.
     ///
     /// # Errors
-    /// If entity types contradict each other: one line for each name that is given twice, with both source positions.
+    /// Fails if entity types contradict each other, with one line for each name that is given twice, including both
+    /// source positions.
     pub fn of(entities: impl IntoIterator<Item = &'static Entity>) -> Result<Registry, String> {
         // `inventory` returns the entity types in the linker's order.
         let mut sorted: Vec<_> = entities.into_iter().collect();
@@ -83,47 +84,46 @@ impl Registry {
         if faults.is_empty() { Ok(Registry { entities: by_name, aliases }) } else { Err(faults.join("\n")) }
     }
 
-    /// Finds the entity type of this name or alias.
+    /// Finds the entity type with this name or alias.
     pub fn find(&self, name: &str) -> Option<&'static Entity> {
         self.entities.get(name).or_else(|| self.aliases.get(name)).copied()
     }
 
-    /// Returns the name of the entity type that a word was most likely meant to be: one that other programs call so, or one
-    /// that is misspelt.
+    /// Returns the name of the entity type that a word most likely means: one with this name in other programs, or one
+    /// with a similar name.
     pub fn nearest(&self, word: &str) -> Option<&'static str> {
         let other = self.known_as(word).map(|entity| entity.name);
         other.or_else(|| nearest(word, self.entities.keys().copied()))
     }
 
-    /// Returns the entity type that other programs call so.
+    /// Returns the entity type with this name in other programs.
     pub(crate) fn known_as(&self, word: &str) -> Option<&'static Entity> {
         let lower = word.to_lowercase();
         self.iter().find(|entity| entity.known_as.contains(&lower.as_str()))
     }
 
-    /// Shows how a scene writes an entity of this kind. Where a type has the kind's own name, that type is the example,
-    /// whatever other types there are.
+    /// Returns the notation of an entity of this kind. If a type has the kind's own name, that type is the example.
     pub(crate) fn example(&self, kind: Kind, name: &str, syntax: Syntax) -> String {
         let is_one = |entity: &Entity| entity.kind() == kind && !entity.refers_to(kind);
         let entity = self.find(&kind.to_string()).or_else(|| self.simplest(is_one));
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
-    /// Returns the entity type with the fewest attributes, none of them a list, among the types for which a condition
-    /// holds. Of several such types, the first by name is returned.
+    /// Returns the entity type with the fewest attributes, none of them a list, among the types that meet a condition.
+    /// Of several such types, returns the first by name.
     pub fn simplest(&self, is_one: impl Fn(&Entity) -> bool) -> Option<&'static Entity> {
         let has_no_list = |entity: &Entity| entity.attributes().all(|its| its.arity().examples().len() == 1);
         let all = self.iter().filter(|entity| is_one(entity) && has_no_list(entity));
         all.min_by_key(|entity| entity.attributes().count())
     }
 
-    /// Shows what a scene looks like, for users who have none yet.
+    /// Describes the beginning of a scene, for users who have none yet.
     pub(crate) fn first_steps(&self, syntax: Syntax) -> String {
         let camera = self.example(Kind::Camera, "NAME", syntax);
         format!("a scene begins with a camera, {camera}; materials, objects and lights follow")
     }
 
-    /// Returns whether there is no entity type: the program links no plugins.
+    /// Returns whether there are no entity types: the program links no plugins.
     pub fn is_empty(&self) -> bool {
         self.entities.is_empty()
     }

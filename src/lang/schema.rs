@@ -1,4 +1,4 @@
-//! The JSON Schema of scenes in TOML, generated from the tables: editors check and complete with it.
+//! The JSON Schema of scenes in TOML, generated from the tables. Editors use it for checks and completion.
 
 use crate::registry::Registry;
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use tabray_core::scene::value::{Datum, Type};
 
 pub use crate::json_schema::{AdditionalProperties, Constant, Schema, TypeKeyword};
 
-/// Returns the schema of scenes. Rules that the language states in words appear only in the descriptions.
+/// Returns the schema of scenes. Rules that are stated in words appear only in descriptions.
 pub fn of(registry: &Registry) -> Schema {
     let names = |entity: &'static Entity| iter::once(entity.name).chain(entity.aliases.iter().copied());
     let cameras: Vec<_> =
@@ -23,7 +23,7 @@ pub fn of(registry: &Registry) -> Schema {
         language: Some("https://json-schema.org/draft/2020-12/schema"),
         title: Some("a tabray scene"),
         additional_properties: Some(AdditionalProperties::Allowed(false)),
-        // The camera may be in a file that is included.
+        // The camera may be in an included file.
         all_of: vec![Schema {
             condition: Some(Box::new(requiring("include"))),
             otherwise: Some(Box::new(one_of(&cameras))),
@@ -34,8 +34,7 @@ pub fn of(registry: &Registry) -> Schema {
     }
 }
 
-/// Returns the schemas of named numbers, of included files and of what is repeated: entities of these types, and
-/// numbers.
+/// Returns the schemas of named numbers, of included files and of `repeat`, with entities of these types and numbers.
 fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
     let each = |schema| Some(AdditionalProperties::Matching(Box::new(schema)));
     let described = |text: &str, schema| Schema { description: Some(text.to_owned()), ..schema };
@@ -61,7 +60,7 @@ fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
     ]
 }
 
-/// Returns the schema of a number of this type, or of a formula that stands for one.
+/// Returns the schema of a number of this type, or of a formula for it.
 fn number(type_name: &'static str) -> Schema {
     Schema { types: Some(TypeKeyword::Any(vec![type_name, "string"])), ..Schema::default() }
 }
@@ -173,7 +172,7 @@ fn body(entity: &'static Entity) -> Schema {
     }
 }
 
-/// Returns the schema of one value of an attribute, whatever its rule is.
+/// Returns the schema of one value of an attribute, regardless of its rule.
 fn one(attribute: &'static dyn Attribute) -> Schema {
     let choices = |sorts: [&'static str; 2], choices| Schema {
         choices: Some(choices),
@@ -190,7 +189,7 @@ fn one(attribute: &'static dyn Attribute) -> Schema {
                 [true, false].map(Constant::Truth).into_iter().chain(words).collect(),
             )
         }
-        // Of several formulas, some are mere numbers.
+        // Some of several formulas may be plain numbers.
         Type::Formula(_) if attribute.arity().most() > 1 => number("number"),
         Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Schema::of_type("string"),
         Type::Choice(known) => {
@@ -199,7 +198,7 @@ fn one(attribute: &'static dyn Attribute) -> Schema {
             let numbers = all.iter().filter_map(|choice| choice.number).map(Constant::Whole);
             let sorts = ["string", "integer"];
             match known.kind {
-                // Any name of an entity, or a number of the list.
+                // The value is any name of an entity, or a number of the list.
                 Some(_) => Schema {
                     condition: Some(Box::new(Schema::of_type("integer"))),
                     then: Some(Box::new(Schema { choices: Some(numbers.collect()), ..Schema::default() })),
@@ -225,13 +224,13 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
         ),
         Counts::List { group, least, most } => (Vec::new(), [group * least, group * most]),
     };
-    // A choice is one of its values, which are no arrays.
+    // A choice is one of its values, which are not arrays.
     let any = match (attribute.arity().allow(1), one.choices.is_some()) {
         (true, true) => one,
         (true, false) => Schema { min_items: Some(least), max_items: Some(most), ..one.or_several() },
         (false, _) => one.array(least, Some(most)),
     };
-    // An array may not have more values than one allowed number and fewer than the next.
+    // The number of values of an array must not lie between two consecutive allowed numbers.
     let gaps = counts.windows(2).filter(|pair| pair[1] > pair[0] + 1).map(|pair| Schema {
         condition: Some(Box::new(Schema { min_items: Some(pair[0] + 1), ..Schema::of_type("array") })),
         then: Some(Box::new(Schema { min_items: Some(pair[1]), ..Schema::default() })),
@@ -242,8 +241,8 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     Schema { description: Some(description(attribute)), default, ..any }
 }
 
-/// Returns the bounds of an attribute of one number whose rule is given in words: the least number, and the number that
-/// the value must exceed. One of the two bounds is 0, or there is none.
+/// Returns the bounds of an attribute of one number with a rule in words: the inclusive and the exclusive minimum. One
+/// of the two is 0, or there is none.
 fn least(attribute: &dyn Attribute) -> [Option<f64>; 2] {
     let allows = |number: i64| {
         attribute.allows(&match attribute.value_type() {

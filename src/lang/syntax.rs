@@ -1,4 +1,4 @@
-//! The two syntaxes of a scene: how each writes names, attributes and values.
+//! The two syntaxes of scenes, and their notations of names, attributes and values.
 
 use std::path::Path;
 use tabray_core::named;
@@ -14,12 +14,12 @@ use tabray_exact::formula::variables::SPACE;
 pub enum Syntax {
     /// The syntax of the course notes.
     ///
-    /// As `sphere ball { radius 2 }`.
+    /// For example, `sphere ball { radius 2 }`.
     #[default]
     Notes,
     /// TOML.
     ///
-    /// As `[sphere.ball]` and below it `radius = 2`.
+    /// For example, `[sphere.ball]`, and `radius = 2` below it.
     Toml,
 }
 
@@ -32,8 +32,8 @@ impl Syntax {
         Some(if extension.eq_ignore_ascii_case("toml") { Self::Toml } else { Self::Notes })
     }
 
-    /// Guesses the syntax of a text that has no file name: only TOML begins with a bracket, with `TYPE.NAME =`
-    /// or with `include =`.
+    /// Guesses the syntax of a text without a file name: only TOML begins with a bracket, with `TYPE.NAME =` or with
+    /// `include =`.
     pub fn of_text(text: &str) -> Self {
         let mut lines = text.lines().map(str::trim);
         let first = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
@@ -42,7 +42,7 @@ impl Syntax {
         if first.starts_with('[') || is_key { Self::Toml } else { Self::Notes }
     }
 
-    /// Shows how a scene writes an attribute, in short: `center N N N`.
+    /// Returns the notation of an attribute, in short: `center N N N`.
     pub fn usage(self, attribute: &dyn Attribute) -> String {
         let (value, count) = match attribute.value_type() {
             Type::Whole | Type::Number | Type::Rotation => {
@@ -63,7 +63,7 @@ impl Syntax {
         self.pair(attribute.name(), &values)
     }
 
-    /// Shows how a scene writes an entity of a type, with the attributes that it must have.
+    /// Returns the notation of an entity of a type, with its required attributes.
     pub(crate) fn entity_usage(self, entity: &Entity, name: &str) -> String {
         let required = entity.attributes().filter(|attribute| attribute.default().is_none());
         let mut body: Vec<_> = required.map(|attribute| self.usage(attribute)).collect();
@@ -94,7 +94,7 @@ impl Syntax {
         }
     }
 
-    /// Returns the values of an attribute as this syntax writes them. Every number reads back to its last bit.
+    /// Returns the values of an attribute in this syntax. Numbers keep all bits when they are read back.
     pub fn values(self, datum: &Datum) -> Vec<String> {
         match datum {
             Datum::Whole(numbers) => numbers.iter().map(i64::to_string).collect(),
@@ -120,7 +120,7 @@ impl Syntax {
         }
     }
 
-    /// Writes the name of an entity where it is defined.
+    /// Writes the name of an entity for its definition.
     pub fn key(self, name: &str) -> String {
         let is_bare =
             |name: &str| name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-".contains(&byte));
@@ -131,7 +131,7 @@ impl Syntax {
         }
     }
 
-    /// Writes a word that is a value. The notes' syntax needs quotes only where something else would be read.
+    /// Writes a word as a value. The notes' syntax needs quotes only if the bare word would be misread.
     pub(crate) fn word(self, word: &str) -> String {
         let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
         let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
@@ -139,7 +139,7 @@ impl Syntax {
     }
 }
 
-/// Writes a word in quotes, as both syntaxes read it.
+/// Writes a quoted word for both syntaxes.
 fn quoted(word: &str) -> String {
     format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""))
 }

@@ -1,4 +1,4 @@
-//! The colours of a scene, as swatches, and the text that replaces a colour by another one.
+//! The colours of a scene, as swatches, and the text to replace a colour.
 
 use super::view::{Form, Item, View, Word};
 use crate::syntax::Syntax;
@@ -9,13 +9,13 @@ use tabray_core::text::shortest;
 /// A colour in a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swatch {
-    /// The range of its values.
+    /// The range of the colour's values.
     pub place: Range<usize>,
-    /// Red, green and blue, from 0 to 1. A brighter colour is shown as bright as can be, with the same hue.
+    /// Red, green and blue, from 0 to 1. A brighter colour is scaled to a largest channel of 1, with the same hue.
     pub colour: [f64; 3],
 }
 
-/// Returns the colours that a text gives in numbers.
+/// Returns the colours that a text gives as numbers.
 pub fn colours(view: &View) -> Vec<Swatch> {
     let mut swatches = Vec::new();
     view.visit(&mut |item, _| {
@@ -43,13 +43,13 @@ fn numbers(view: &View, words: &[Word]) -> Option<[f64; 3]> {
     Some(colour)
 }
 
-/// Returns the number by which a colour is divided to be shown: 1, or its brightest channel if that is greater.
+/// Returns the number that a colour is divided by for its swatch: its brightest channel, but at least 1.
 fn brightest(colour: [f64; 3]) -> f64 {
     colour.into_iter().fold(1.0, f64::max)
 }
 
-/// Returns the text of a colour that replaces the one in a range. Where the old colour is brighter than 1, the new one
-/// is as bright.
+/// Returns the text for a new colour in place of the one in a range. If the old colour is brighter than 1, the new one
+/// is scaled by the same factor.
 pub fn presented(view: &View, place: &Range<usize>, colour: [f64; 3]) -> String {
     let old = view.slice(place.clone()).split([' ', ',', '\t', '\n']).filter(|word| !word.is_empty());
     let old: Vec<f64> = old.filter_map(|word| word.parse().ok()).collect();

@@ -1,4 +1,4 @@
-//! The faults of a scene, as the loader reports them, each in its file.
+//! The errors and warnings of a scene, as the loader reports them, each in its file.
 
 use super::text::{Position, Text};
 use crate::reader::{self, Fault, Located, ReadOptions, Severity};
@@ -9,26 +9,26 @@ use std::sync::Arc;
 use tabray_core::files::plain;
 use tabray_core::text;
 
-/// A fault in a file.
+/// An error or a warning in a file.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
     /// The file.
     pub path: PathBuf,
-    /// Whether it is an error or a warning.
+    /// Whether this is an error or a warning.
     pub severity: Severity,
     /// The error and its correction.
     pub message: String,
-    /// The beginning and the end of what is marked.
+    /// The beginning and the end of the marked text.
     pub range: [Position; 2],
     /// Further places.
     pub also: Vec<Remark>,
-    /// The word that was probably meant instead of the marked one.
+    /// The likely correction of the marked word.
     pub meant: Option<String>,
     /// The marked text.
     pub marked: String,
 }
 
-/// A further place of a fault.
+/// A further place of an error or a warning.
 #[derive(Clone, Debug)]
 pub struct Remark {
     pub path: PathBuf,
@@ -36,8 +36,8 @@ pub struct Remark {
     pub text: String,
 }
 
-/// Reads a scene as a render does, and returns its faults. Included files that are `open` in the editor are read as
-/// they are there.
+/// Reads a scene like a render, and returns its errors and warnings. Included files that are `open` in the editor are
+/// read from there.
 pub fn diagnose(
     registry: &Registry,
     path: &Path,
@@ -60,7 +60,7 @@ pub fn diagnose(
     report.located().map(|(fault, located)| diagnosis(fault, located, &mut texts)).collect()
 }
 
-/// Returns a fault with its places.
+/// Returns an error or a warning with its places.
 fn diagnosis<'r>(fault: &Fault, located: Vec<Located<'r>>, texts: &mut HashMap<&'r str, Text>) -> Diagnosis {
     let mut remarks: Vec<_> = located
         .iter()

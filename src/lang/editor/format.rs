@@ -1,4 +1,4 @@
-//! Formats a scene: one attribute on each line, in columns, as the scenes of this repository are written. The order and
+//! The formatter of scenes: one attribute on each line, in columns, like the scenes of this repository. The order and
 //! the comments stay, and entities on one line stay on one line.
 
 use super::format_toml;
@@ -11,14 +11,14 @@ use std::fmt::Write;
 use std::mem::replace;
 use std::ops::Range;
 
-/// The widths of the widest type or name, and of the widest attribute with its values, to which others are aligned.
+/// The maximum width of a type or name, and of an attribute with its values, that others are aligned with.
 const WIDEST: usize = 24;
 const WIDEST_CELL: usize = 48;
 
-/// The most values of a row in which all stand equally far apart.
+/// The maximum number of values in a row with equal gaps.
 const SHORT_ROW: usize = 4;
 
-/// Returns a fault for which a text cannot be formatted.
+/// Returns an error that prevents formatting.
 pub fn problem(view: &View) -> Option<Fault> {
     view.breaks.first().cloned().or_else(|| match view.syntax {
         Syntax::Notes => None,
@@ -28,7 +28,7 @@ pub fn problem(view: &View) -> Option<Fault> {
     })
 }
 
-/// Returns the text of a scene as it should be written, or `None` where the form of the text has faults.
+/// Returns the formatted text of a scene, or `None` if it has syntax errors.
 pub fn formatted(view: &View) -> Option<String> {
     if !view.breaks.is_empty() {
         return None;
@@ -56,15 +56,15 @@ struct Line {
 
 enum LineContent {
     Blank,
-    /// Only a comment.
+    /// A comment alone.
     Comment,
     /// A line without columns.
     Plain(String),
-    /// An entity on one line: its type and its name, and its attributes, each with its name and with its values.
+    /// An entity on one line: its type and name, and each attribute's name and values.
     Entity([String; 2], Vec<[String; 2]>),
     /// A named number.
     Let([String; 2]),
-    /// An attribute, or further values of the one above.
+    /// An attribute, or further values of the attribute above.
     Attribute([String; 2]),
 }
 
@@ -80,7 +80,7 @@ fn in_notes(view: &View) -> String {
 
 struct Writer<'v> {
     view: &'v View,
-    /// The end of the word or of the comment that was written last.
+    /// The end of the last written word or comment.
     at: usize,
     lines: Vec<Line>,
 }
@@ -94,7 +94,7 @@ impl Writer<'_> {
         self.view.slice(word.place()).to_owned()
     }
 
-    /// Writes the comments up to the next word, and keeps one of the blank lines before it.
+    /// Writes the comments up to the next word, and one of the blank lines before it.
     fn gap(&mut self, to: usize, indent: usize) {
         let text = self.view.text.as_str();
         let (mut newlines, nowhere) = (0, &mut Report::default());
@@ -113,7 +113,7 @@ impl Writer<'_> {
         self.at = to.max(self.at);
     }
 
-    /// Writes a comment: on the line of the word before it, or on one of its own.
+    /// Writes a comment on the line of the word before it, or on its own line.
     fn comment(&mut self, text: &str, newlines: usize, indent: usize) {
         if let Some(last) = self.lines.last_mut()
             && newlines == 0
@@ -127,7 +127,7 @@ impl Writer<'_> {
         self.lines.push(Line { indent, content: LineContent::Comment, comment: text.to_owned() });
     }
 
-    /// Keeps one of several blank lines, but none after a brace.
+    /// Writes one of several blank lines, but none after a brace.
     fn blank(&mut self, newlines: usize) {
         let is_open = |line: &Line| matches!(&line.content, LineContent::Plain(text) if text.ends_with('{'));
         let follows = self
@@ -164,7 +164,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes the comments between words that are on one line already.
+    /// Writes the comments between words that are already on one line.
     fn words(&mut self, words: impl Iterator<Item = Word>, indent: usize) {
         // The keyword itself is not a comment.
         for word in words {
@@ -248,7 +248,7 @@ impl Writer<'_> {
         self.at = repeat.place.end;
     }
 
-    /// Returns the text between two values on a line. Groups of a long row may be apart.
+    /// Returns the text between two values on a line. Groups of a long row may be separated.
     fn between(&self, attribute: &Attribute, gap: Range<usize>) -> &'static str {
         let is_long = attribute.known.is_some_and(|known| known.arity().most() > SHORT_ROW);
         if is_long && gap.len() > 1 { "  " } else { " " }
@@ -261,12 +261,12 @@ impl Writer<'_> {
     }
 }
 
-/// Returns the width to which texts are padded: the width of the widest text that is not too wide.
+/// Returns the width for padding texts: the maximum width of those that are at most `widest` wide.
 fn width<'t>(texts: impl Iterator<Item = &'t String>, widest: usize) -> usize {
     texts.map(|text| text.chars().count()).filter(|width| *width <= widest).max().unwrap_or(0)
 }
 
-/// Writes the lines, those in columns together.
+/// Writes the lines, with columns for each run of similar lines.
 fn written(lines: &[Line]) -> String {
     let mut text = String::new();
     let mut at = 0;
@@ -291,7 +291,7 @@ fn written(lines: &[Line]) -> String {
     text
 }
 
-/// Tells whether lines have common columns.
+/// Tells whether a line shares columns with another one.
 fn goes_with(first: &Line, line: &Line) -> bool {
     match (&first.content, &line.content) {
         (LineContent::Entity(..), LineContent::Entity(..)) | (LineContent::Let(_), LineContent::Let(_)) => {
@@ -329,7 +329,7 @@ fn attributes(run: &[Line]) -> Vec<String> {
     run.iter().map(body).collect()
 }
 
-/// Writes entities that stand on one line each: types, names and like attributes below each other.
+/// Writes single-line entities, with types, names and equal attributes in columns.
 fn entities(run: &[Line]) -> Vec<String> {
     let parts: Vec<_> = run
         .iter()
@@ -343,8 +343,8 @@ fn entities(run: &[Line]) -> Vec<String> {
     let names_of = |attributes: &[[String; 2]]| -> Vec<String> {
         attributes.iter().map(|[name, _]| name.clone()).collect()
     };
-    // The widths of the columns. Entities that begin alike and have another attribute after that beginning share a
-    // width.
+    // The widths of the columns. Entities with the same first attributes share the width of the last of these, if more
+    // attributes follow.
     let mut widths = std::collections::HashMap::<Vec<String>, usize>::new();
     for (_, attributes) in &parts {
         for end in 1..attributes.len() {

@@ -1,14 +1,14 @@
-//! Formats a scene in TOML: spaces around `=` and after commas, and keys in columns. The order, the comments, and what
-//! stands on one line stay.
+//! The formatter of scenes in TOML: spaces around `=` and after commas, and keys in columns. The order, the comments,
+//! and the lines of arrays and tables stay.
 
 use std::iter::repeat_n;
 use std::ops::Range;
 use toml_parser::parser::{Event, EventKind};
 
-/// The width of the widest key to which others are aligned.
+/// The maximum width of a key that others are aligned with.
 const WIDEST: usize = 24;
 
-/// A line: a key with its value, a title, or nothing. The ranges are those of the writer's text.
+/// A line: a key with its value, a title, or nothing. The ranges refer to the writer's text.
 #[derive(Default)]
 struct Line<'t> {
     /// The key, if it is aligned with others.
@@ -24,20 +24,20 @@ struct Writer<'t> {
     /// The words of all lines, one line after another.
     text: String,
     lines: Vec<Line<'t>>,
-    /// The key of the line that is written, the beginning of its rest, and its comment.
+    /// The key of the current line, the beginning of its rest, and its comment.
     key: Option<Range<usize>>,
     start: usize,
     comment: &'t str,
     /// The text between the last word and the next one.
     between: &'static str,
-    /// Whether a line of an array begins, which is indented already.
+    /// Whether a line of an array begins, which is already indented.
     begins: bool,
-    /// The number of arrays and tables on one line that are open.
+    /// The numbers of open arrays and tables on one line.
     arrays: usize,
     tables: usize,
 }
 
-/// Returns the text of a scene as it should be written, given its events. Its form has no faults.
+/// Returns the formatted text of a scene, given its events. The text must have no syntax errors.
 pub fn formatted(text: &str, events: &[Event]) -> String {
     let mut writer = Writer { text: String::with_capacity(text.len()), ..Writer::default() };
     for event in events {
@@ -125,7 +125,7 @@ impl<'t> Writer<'t> {
     }
 }
 
-/// Writes lines, whose words are in a text, with their keys in columns.
+/// Writes lines with their keys in columns. `words` has the text of the lines.
 fn written(words: &str, lines: Vec<Line>) -> String {
     let is_blank = |line: &Line| line.key.is_none() && line.rest.is_empty() && line.comment.is_empty();
     let is_aligned = |line: &Line| line.key.is_some() && !words[line.rest.clone()].starts_with('{');

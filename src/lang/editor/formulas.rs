@@ -8,9 +8,9 @@ use tabray_exact::formula::{is_in_name, is_taken};
 pub enum WordKind {
     /// A number, with its exponent.
     Number,
-    /// A name of any meaning.
+    /// A name, whatever its meaning.
     Name,
-    /// Anything else but white space: a character.
+    /// Any other character except white space.
     Sign,
 }
 
@@ -49,7 +49,7 @@ pub fn names(formula: &str) -> Vec<Range<usize>> {
     names.filter(|place| is_name(&formula[place.clone()])).collect()
 }
 
-/// Tells whether a scene can give a number this name.
+/// Tells whether a scene can give this name to a number.
 pub fn is_name(name: &str) -> bool {
     name.starts_with(char::is_alphabetic) && name.chars().all(is_in_name) && !is_taken(name)
 }

@@ -1,10 +1,10 @@
-//! Names of the values of a row, to be shown between them.
+//! Names of the values of a row, shown between the values.
 
 use super::types::value_name;
 use super::view::{Item, View};
 use std::ops::Range;
 
-/// A name that is shown before a value.
+/// A name shown before a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hint {
     /// The first byte of the value.
@@ -13,7 +13,7 @@ pub struct Hint {
     pub name: &'static str,
 }
 
-/// Returns the names of the values in a range of a text, for rows that are complete.
+/// Returns the names of the values in a range of a text, for complete rows.
 pub fn hints(view: &View, range: &Range<usize>) -> Vec<Hint> {
     let mut hints = Vec::new();
     view.visit(&mut |item, _| {

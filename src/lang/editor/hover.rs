@@ -1,4 +1,4 @@
-//! What a word means, in Markdown.
+//! The meaning of a word, in Markdown.
 
 use super::names::describe;
 use super::project::{Group, definitions};
@@ -12,7 +12,7 @@ use tabray_core::scene::entity;
 use tabray_core::scene::value::Datum;
 use tabray_core::text::{list, shown};
 
-/// The most lines of a definition that are shown.
+/// The maximum number of lines of a definition that are shown.
 const MOST_LINES: usize = 16;
 
 /// The explanation of a word.
@@ -56,7 +56,7 @@ fn in_entity(view: &View, entity: &Entity, at: usize) -> Option<Hover> {
     value(view, entity, attribute, known_attribute, word)
 }
 
-/// Describes a value that is no name.
+/// Describes a value other than a name.
 fn value(
     view: &View,
     entity: &Entity,
@@ -92,7 +92,7 @@ fn value(
     Some(Hover { text, place: word.place() })
 }
 
-/// Shows what has the name at a position.
+/// Shows the definition of the name at a position.
 fn name(group: &Group, view: &View, at: usize) -> Option<Hover> {
     let names = view.names();
     let (name, _) = names.at(at)?;
@@ -132,7 +132,7 @@ fn keyword(view: &View, at: usize) -> Option<Hover> {
     Some(Hover { text: usage.to_owned(), place: start..end })
 }
 
-/// Describes a type of entities: its meaning, how it is written, and its attributes.
+/// Describes a type of entities: its meaning, its notation, and its attributes.
 fn about_type(syntax: Syntax, known: &'static entity::Entity) -> String {
     let mut text = format!("**{}**, {}: {}\n\n", known.name, known.kind().with_article(), known.meaning);
     text += &format!("{}\n\n", syntax.entity_usage(known, "NAME"));

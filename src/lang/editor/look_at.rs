@@ -1,4 +1,4 @@
-//! Turns the notes' `camera`, whose image plane stays in its place, into a `look_at` that shows the same view.
+//! Converts the notes' `camera`, which has a fixed image plane, into a `look_at` with the same view.
 
 use super::text::Text;
 use super::view::{Attribute, Entity, Item, View};
@@ -7,45 +7,44 @@ use crate::syntax::Syntax;
 use std::ops::Range;
 use tabray_core::text::{short, shortest};
 
-/// The greatest distance in pixels by which a view that counts as the same shifts a pixel.
+/// The maximum shift of a pixel, in pixels, for a view that counts as the same.
 const SAME: f64 = 0.5;
 
-/// The least angle in degrees that counts as one.
+/// The minimum angle, in degrees, that does not count as 0.
 const STRAIGHT: f64 = 1e-6;
 
-/// What makes a `look_at` of a `camera`.
+/// The conversion of a `camera` into a `look_at`.
 #[derive(Debug)]
 pub struct LookAt {
-    /// Ranges of the text and what is to stand there, in the order of the text.
+    /// Ranges of the text and their replacements, in the order of the text.
     pub edits: Vec<(Range<usize>, String)>,
-    /// How its view differs.
+    /// The change of the view.
     pub change: Change,
 }
 
-/// How the view of a `look_at` differs from that of the `camera` before it.
+/// The difference between the view of a `look_at` and that of the original `camera`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Change {
-    /// The distance by which a pixel at the edge of the image shifts, in pixels. The outermost pixels of a `camera` have
-    /// their centres on the edges of its image plane, so that they are square only where the image is.
+    /// The shift of a pixel at the edge of the image, in pixels. The outermost pixels of a `camera` have their centres
+    /// on the edges of its image plane, and so its pixels are square only if the image is.
     pub shift: f64,
-    /// The angle in degrees by which the view turns toward the middle of the image plane; 0 where the viewer of the
-    /// `camera` is in front of it.
+    /// The angle, in degrees, by which the view turns toward the middle of the image plane. It is 0 if the viewer of
+    /// the `camera` is in front of the middle.
     pub turn: f64,
 }
 
 impl LookAt {
-    /// Returns a text with the edits.
+    /// Returns the text after the edits.
     pub fn applied(&self, text: &Text) -> Text {
         self.edits.iter().rev().fold(text.clone(), |text, (place, with)| text.edited(place.clone(), with))
     }
 }
 
-/// Returns what makes a `look_at` of the `camera` in a range of a text; `None` if there is none.
+/// Returns the conversion of the `camera` in a range of a text into a `look_at`, or `None` if there is no `camera`.
 ///
 /// The viewer stays, and the middle of the image plane appears in the middle of the image, at the same size as before.
 ///
-/// # Errors
-/// Returns why no `look_at` shows the view of the `camera`, or why the text does not tell.
+/// # Errors Returns the reason why no `look_at` has the view of the `camera`, or why the text does not determine it.
 pub fn look_at(view: &View, wanted: &Range<usize>) -> Option<Result<LookAt, String>> {
     let camera = view.items.iter().find_map(|item| match item {
         Item::Entity(entity) if entity.known.is_some_and(|known| known.name == "camera") => Some(entity),
@@ -97,8 +96,8 @@ fn turned(view: &View, camera: &Entity) -> Result<LookAt, String> {
     Ok(LookAt { edits, change })
 }
 
-/// Returns the angle of view across an image, in degrees, for which square pixels show what the pixels of an image
-/// plane at z = 0 show, and the change of the view.
+/// Returns the angle of view across an image, in degrees, and the change of the view. At this angle, square pixels show
+/// the same as the pixels of an image plane at z = 0.
 fn angle(pixels: [f64; 2], size: [f64; 2], [x, y, z]: [f64; 3]) -> Result<(f64, Change), String> {
     if z <= 0.0 {
         return Err("the viewer is behind the image plane, which mirrors the image".to_owned());
@@ -121,7 +120,7 @@ fn angle(pixels: [f64; 2], size: [f64; 2], [x, y, z]: [f64; 3]) -> Result<(f64, 
             short(angle)
         ));
     }
-    // Less than a hundredth of a pixel is lost.
+    // Rounding loses less than a hundredth of a pixel.
     let angle = format!("{angle:.5e}").parse().unwrap_or(angle);
     Ok((angle, Change { shift, turn: if turn < STRAIGHT { 0.0 } else { turn } }))
 }
@@ -130,7 +129,7 @@ fn is_called(given: &Attribute, name: &str) -> bool {
     given.known.is_some_and(|known| known.name() == name)
 }
 
-/// Returns an attribute of this many numbers.
+/// Returns an attribute with this many numbers.
 fn numbers<'c, const N: usize>(
     view: &View,
     camera: &'c Entity,

@@ -1,4 +1,4 @@
-//! What an editor asks about a scene while it is written: pure functions of its text, which may be half written.
+//! Answers to an editor's questions about a scene: pure functions of its text, which may be incomplete.
 //!
 //! All names come from the tables of the registered entity types.
 

@@ -1,11 +1,11 @@
-//! The names of a text, to be looked up.
+//! The names of a text, for lookup.
 
 use super::word::Word;
 use std::collections::HashMap;
 use std::ops::Range;
 use tabray_core::scene::kind::Kind;
 
-/// The namespaces: names in different ones do not clash.
+/// The namespaces. Equal names in different namespaces do not clash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Namespace {
     /// The names of the entities of a kind.
@@ -30,7 +30,7 @@ pub enum NameContext {
 pub struct Name {
     pub namespace: Namespace,
     pub text: String,
-    /// Its range, without quotes.
+    /// The range of the name, without quotes.
     pub place: Range<usize>,
     pub context: NameContext,
 }
@@ -39,14 +39,14 @@ pub struct Name {
 #[derive(Clone, Debug)]
 pub struct Definition {
     pub name: Name,
-    /// The other places where the definition writes the same name.
+    /// The other places where the definition repeats the name.
     pub again: Vec<Name>,
-    /// The range of what has the name.
+    /// The range of the named item.
     pub whole: Range<usize>,
-    /// The range in which the name can be used as written, if the definition is repeated; without a range, the name can
-    /// be used everywhere.
+    /// For a repeated definition, the range in which the name can be used as written. Without a range, the name can be
+    /// used everywhere.
     pub scope: Option<Range<usize>>,
-    /// By how many `repeat` it is repeated.
+    /// The number of enclosing `repeat`s.
     pub depth: usize,
 }
 
@@ -59,12 +59,12 @@ pub struct Names {
 }
 
 impl Names {
-    /// Returns the indices of the definitions of exactly this name.
+    /// Returns the indices of the definitions with exactly this name.
     pub fn named(&self, namespace: Namespace, text: &str) -> &[usize] {
         self.by_name.get(&(namespace, text.to_owned())).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the name at a position, and the index of its definition if it is given there.
+    /// Returns the name at a position, and the index of its definition if it is defined there.
     pub fn at(&self, at: usize) -> Option<(&Name, Option<usize>)> {
         let has = |name: &Name| name.place.start <= at && at <= name.place.end;
         let given = self.definitions.iter().enumerate().find_map(|(index, definition)| {

@@ -1,4 +1,4 @@
-//! The names that a scene gives, and where it uses them.
+//! The names that a scene defines, and their uses.
 
 use super::formulas;
 pub use super::named::{Definition, Name, NameContext, Names, Namespace};
@@ -23,7 +23,7 @@ impl Names {
     fn add(&mut self, view: &View, item: &Item, outer: &[&Repeat]) {
         let name = |namespace, word: Word| {
             let (mut text, mut place) = (view.word(word).into_owned(), word.inner());
-            // That of a function ends before its arguments.
+            // The name of a function ends before its arguments.
             if let (Namespace::Number, Some(end)) = (namespace, text.find('(')) {
                 text.truncate(end);
                 place.end = place.start + end;
@@ -99,20 +99,20 @@ impl Names {
 }
 
 impl View {
-    /// Returns the names of the text, which are found once.
+    /// Returns the names of the text, found on first use.
     pub fn names(&self) -> &Names {
         self.names.get_or_init(|| Names::of(self))
     }
 }
 
-/// A name that the cursor is at.
+/// The name at the cursor.
 #[derive(Clone, Debug)]
 pub struct NameAtCursor {
-    /// The noun for the named thing: `material`, `number`.
+    /// The noun for the named item: `material`, `number`.
     pub kind: String,
     /// The name.
     pub text: String,
-    /// Its range, without quotes.
+    /// The range of the name, without quotes.
     pub place: Range<usize>,
 }
 
@@ -123,8 +123,8 @@ pub fn name_at_cursor(view: &View, at: usize) -> Option<NameAtCursor> {
     Some(NameAtCursor { kind: describe(name.namespace), text: name.text.clone(), place: name.place.clone() })
 }
 
-/// Returns the names in the formula at a range of a text that mean nothing: they are neither words of formulas nor
-/// numbers that the text names. Names of functions are left out.
+/// Returns the unknown names in the formula at a range of a text: neither words of formulas nor numbers of the text.
+/// Names of functions are omitted.
 pub fn unknown_numbers(view: &View, formula: &Range<usize>) -> Vec<String> {
     let (names, text) = (view.names(), view.slice(formula.clone()));
     let mut unknown: Vec<String> = Vec::new();
@@ -139,7 +139,7 @@ pub fn unknown_numbers(view: &View, formula: &Range<usize>) -> Vec<String> {
     unknown
 }
 
-/// Returns the word for what is named.
+/// Returns the noun for items of a namespace.
 pub fn describe(namespace: Namespace) -> String {
     match namespace {
         Namespace::Entity(kind) => kind.to_string(),
@@ -147,10 +147,9 @@ pub fn describe(namespace: Namespace) -> String {
     }
 }
 
-/// Says why something cannot have a name.
+/// Checks whether an item can have a name.
 ///
-/// # Errors
-/// The reason.
+/// # Errors Returns the reason why it cannot.
 pub fn check_name(namespace: Namespace, name: &str) -> Result<(), String> {
     match namespace {
         Namespace::Number if !formulas::is_name(name) => Err(format!(
@@ -164,7 +163,7 @@ pub fn check_name(namespace: Namespace, name: &str) -> Result<(), String> {
     }
 }
 
-/// Returns a name with the numbers of rounds that a use adds to the name in the definition.
+/// Returns a name as written in a context, with quotes if needed.
 pub fn written(syntax: Syntax, context: NameContext, name: &str) -> String {
     match context {
         NameContext::Formula => name.to_owned(),

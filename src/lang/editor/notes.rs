@@ -10,10 +10,10 @@ use crate::registry::Registry;
 use crate::syntax::Syntax;
 use std::mem::{replace, take};
 
-/// The maximum depth of nested `repeat`s. What deeper ones repeat is skipped.
+/// The maximum depth of nested `repeat`s. The contents of deeper ones are skipped.
 const DEEPEST: usize = 64;
 
-/// Parses a text into items, and returns where it is not in the form of a scene.
+/// Parses a text into items, and returns its syntax errors.
 pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Fault>) {
     let mut report = Report::new("", text, Syntax::Notes);
     let grammar = Grammar::of_draft(registry, text, &mut report);
@@ -28,7 +28,7 @@ struct Reader<'a, 'r> {
     text: &'a str,
     grammar: Grammar<'a, 'r>,
     items: Vec<Item>,
-    /// The `repeat`s that are open, each with the items before it.
+    /// The open `repeat`s, each with the items before it.
     outer: Vec<(Repeat, Vec<Item>)>,
 }
 
@@ -82,7 +82,7 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    /// Ends the innermost `repeat`, whose body ends there.
+    /// Ends the innermost `repeat`. Its body ends at `end`.
     fn close(&mut self, end: usize) {
         let Some((mut repeat, before)) = self.outer.pop() else { return };
         repeat.items = replace(&mut self.items, before);
@@ -111,7 +111,7 @@ impl<'a> Reader<'a, '_> {
         })
     }
 
-    /// Returns the place of a word; `None` of one that stands for a missing one.
+    /// Returns the place of a word, or `None` for a substitute of a missing word.
     fn word(&self, word: &parsed::Word<'a>) -> Option<Word> {
         let place = word.place.clone().filter(|place| !place.is_empty())?;
         let form = match word.form {

@@ -1,4 +1,4 @@
-//! The outline of a scene, and what can be folded.
+//! The outline of a scene, and its foldable lines.
 
 use super::view::{Item, View};
 use std::ops::Range;
@@ -7,17 +7,17 @@ use tabray_core::scene::kind::Kind;
 /// An entry of the outline.
 #[derive(Clone, Debug)]
 pub struct Symbol {
-    /// The name that is shown.
+    /// The displayed name.
     pub name: String,
     /// The type of an entity, or the keyword.
     pub detail: String,
-    /// The kind of an entity; `None` of what is none.
+    /// The kind of an entity, or `None` for other items.
     pub kind: Option<Kind>,
-    /// The range of its text.
+    /// The range of the entry's text.
     pub place: Range<usize>,
     /// The range of the name.
     pub name_place: Range<usize>,
-    /// The entries in it.
+    /// The nested entries.
     pub inner: Vec<Symbol>,
 }
 
@@ -42,7 +42,7 @@ fn symbol(view: &View, item: &Item) -> Symbol {
     let place = item.place().clone();
     let name_place = name.map_or(place.start..place.start, |name| name.place());
     let said = name.map(|name| view.word(name).into_owned()).filter(|name| !name.is_empty());
-    // In TOML the entries of what is repeated reach beyond its title.
+    // In TOML, the entries of a `repeat` extend beyond its title.
     let end =
         inner.iter().map(|inner: &Symbol| inner.place.end).fold(place.end.max(name_place.end), usize::max);
     Symbol {
@@ -55,16 +55,16 @@ fn symbol(view: &View, item: &Item) -> Symbol {
     }
 }
 
-/// Lines that can be folded.
+/// Foldable lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fold {
     /// The first and the last line, from 0.
     pub lines: [usize; 2],
-    /// Whether they are a comment.
+    /// Whether the lines are a comment.
     pub is_comment: bool,
 }
 
-/// Returns the lines that can be folded: entities, what is repeated, and comments of several lines.
+/// Returns the foldable lines: entities, `repeat`s, and comments of several lines.
 pub fn folds(view: &View) -> Vec<Fold> {
     let mut folds = Vec::new();
     view.visit(&mut |item, _| {

@@ -1,4 +1,4 @@
-//! The files of a scene: where the names in them are given, and where they are used.
+//! The files of a scene: the definitions and the uses of names in them.
 
 use super::names::{Definition, Name, NameContext, Names, Namespace, check_name, written};
 use super::view::{Item, View};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tabray_core::files::plain;
 
-/// The most files of a scene that are read.
+/// The maximum number of files of a scene that are read.
 const MOST_FILES: usize = 1000;
 
-/// Gives access to files: as they are in the editor if they are open there, and otherwise as stored.
+/// Gives access to files, with the contents in the editor if they are open there, and otherwise as stored.
 pub trait Files {
     /// Returns the view of a file, if it can be read.
     fn view(&self, path: &Path) -> Option<Arc<View>>;
@@ -21,14 +21,14 @@ pub trait Files {
 pub struct Location {
     /// The file.
     pub path: PathBuf,
-    /// The range of its text, in bytes.
+    /// The range of the text, in bytes.
     pub place: Range<usize>,
 }
 
-/// The files of one scene or of several, with what they say.
+/// The files of one scene or of several, with their contents.
 pub type Group = Vec<(PathBuf, Arc<View>)>;
 
-/// Returns a file and those that it includes.
+/// Returns a file and the files that it includes, directly or not.
 fn with_included(files: &dyn Files, root: &Path) -> Group {
     let mut group: Group = Vec::new();
     let mut waiting = vec![root.to_owned()];
@@ -64,10 +64,11 @@ pub fn group(files: &dyn Files, path: &Path, scenes: &[PathBuf]) -> Group {
     group
 }
 
-/// A definition: the index of its file, and its own.
+/// A definition: the index of its file, and its index there.
 type Id = (usize, usize);
 
-/// Returns the definition that a name in a file means, and the number of letters at its end that are numbers of rounds.
+/// Returns the definition that a name in a file refers to, and the number of bytes at the end of the name that are
+/// round numbers.
 fn resolved(names: &[&Names], file: usize, name: &Name) -> Option<(Id, usize)> {
     let mut text = name.text.as_str();
     let mut rounds = 0;
@@ -81,7 +82,7 @@ fn resolved(names: &[&Names], file: usize, name: &Name) -> Option<(Id, usize)> {
             let visible = names[of].named(name.namespace, text).iter().map(move |index| (of, *index));
             visible.filter(|(of, index)| is_visible(*of, &names[*of].definitions[*index]))
         });
-        // The innermost one is meant, and of several the last one before the use.
+        // The innermost definition counts, and of several the last one before the use.
         let nearness = |(of, index): &Id| {
             let definition = &names[*of].definitions[*index];
             let is_before = *of == file && definition.name.place.start <= name.place.start;
@@ -111,7 +112,7 @@ fn all_names(group: &Group) -> Vec<&Names> {
     group.iter().map(|(_, view)| view.names()).collect()
 }
 
-/// Returns where the name at a position of the group's first file is given.
+/// Returns the definition of the name at a position of the group's first file.
 pub fn definitions(group: &Group, at: usize) -> Vec<Location> {
     let names = all_names(group);
     let found = definition(&names, at).map(|(file, index)| Location {
@@ -121,7 +122,7 @@ pub fn definitions(group: &Group, at: usize) -> Vec<Location> {
     found.or_else(|| included(group, at)).into_iter().collect()
 }
 
-/// Returns the file whose name in an `include` is at a position.
+/// Returns the included file whose name is at a position.
 fn included(group: &Group, at: usize) -> Option<Location> {
     let (path, view) = group.first()?;
     let Some(Item::Include(include)) = view.at(at) else { return None };
@@ -130,7 +131,7 @@ fn included(group: &Group, at: usize) -> Option<Location> {
     group.iter().any(|(known, _)| *known == file).then_some(Location { path: file, place: 0..0 })
 }
 
-/// A use of a name: the file, the name, the letters at its end that are the numbers of rounds.
+/// A use of a name: the file, the name, and the number of bytes at its end that are round numbers.
 type Use<'n> = (usize, &'n Name, usize);
 
 fn uses<'n>(names: &[&'n Names], id: Id, with_definition: bool) -> Vec<Use<'n>> {
@@ -155,7 +156,7 @@ fn uses<'n>(names: &[&'n Names], id: Id, with_definition: bool) -> Vec<Use<'n>> 
     found
 }
 
-/// Returns where the name at a position of the group's first file is used.
+/// Returns the uses of the name at a position of the group's first file.
 pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Location> {
     let names = all_names(group);
     let Some(id) = definition(&names, at) else { return Vec::new() };
@@ -164,10 +165,9 @@ pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Location> 
     uses(&names, id, with_definition).into_iter().map(found).collect()
 }
 
-/// Returns the changes by which the name at a position of the group's first file becomes another one.
+/// Returns the changes that rename the name at a position of the group's first file.
 ///
-/// # Errors
-/// Returns why the name cannot be changed.
+/// # Errors Returns the reason why the name cannot be changed.
 pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Location, String)>, String> {
     let names = all_names(group);
     let id = definition(&names, at).ok_or("there is no name of the scene here")?;

@@ -1,4 +1,4 @@
-//! Reads a text as far as possible.
+//! The tolerant reader of a text.
 
 use super::text::Text;
 use super::view::View;
@@ -7,8 +7,8 @@ use crate::reader::{Fault, is_older};
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 
-/// Reads a text. Its syntax is that of the file's name, or else that in which the text begins. Of the course's older
-/// scenes, nothing is read: none of their numbers has a name.
+/// Reads a text. The syntax follows from the file's name, or else from the beginning of the text. The course's older
+/// scenes are not read, because none of their numbers has a name.
 pub fn read(registry: &Registry, name: &str, text: Text) -> View {
     let syntax = match Syntax::of_name(name) {
         Some(Syntax::Toml) => Syntax::Toml,

@@ -1,4 +1,4 @@
-//! What the words of a text are, so that an editor can colour them.
+//! The kinds of the words of a text, for colouring in an editor.
 
 use super::formulas::{self, WordKind};
 use super::toml_events::events;
@@ -24,7 +24,7 @@ pub enum TokenKind {
     Attribute,
     /// A number.
     Number,
-    /// A file, or any other word.
+    /// A file name, or any other word.
     Word,
     /// A comment.
     Comment,
@@ -34,7 +34,7 @@ pub enum TokenKind {
     Function,
     /// A variable of a formula.
     Variable,
-    /// One of several alternatives, `yes` and `no` among them.
+    /// One of several alternatives, including `yes` and `no`.
     Choice,
     /// `let`, `repeat` or `include`.
     Keyword,
@@ -56,7 +56,7 @@ impl TokenKind {
         Self::Keyword,
     ];
 
-    /// Returns the name that the Language Server Protocol has for it.
+    /// Returns the name of the kind in the Language Server Protocol.
     pub fn name(self) -> &'static str {
         match self {
             Self::Type => "type",
@@ -77,15 +77,15 @@ impl TokenKind {
 /// A word of a text, or a part of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SemanticToken {
-    /// Its range in bytes.
+    /// The range of the word, in bytes.
     pub place: Range<usize>,
-    /// What it is.
+    /// The kind of the word.
     pub kind: TokenKind,
-    /// Whether it is the name in a definition.
+    /// Whether the word is the name in a definition.
     pub is_definition: bool,
 }
 
-/// Returns the words of a text, in its order; none has a part of another.
+/// Returns the words of a text, in order, without overlaps.
 pub fn semantic_tokens(view: &View) -> Vec<SemanticToken> {
     let mut words = Words { view, found: BTreeMap::new() };
     view.visit(&mut |item, _| words.item(item));
@@ -96,14 +96,14 @@ pub fn semantic_tokens(view: &View) -> Vec<SemanticToken> {
     words.found.into_values().collect()
 }
 
-/// The words that are found, by their first bytes.
+/// The words found so far, by their first bytes.
 struct Words<'v> {
     view: &'v View,
     found: BTreeMap<usize, SemanticToken>,
 }
 
 impl Words<'_> {
-    /// Adds a word, unless one is known there: what an item says of it comes first.
+    /// Adds a word, unless one is already known there. Words of items come first.
     fn add(&mut self, place: Range<usize>, kind: TokenKind, is_definition: bool) {
         if !place.is_empty() {
             self.found.entry(place.start).or_insert(SemanticToken { place, kind, is_definition });
@@ -189,7 +189,7 @@ impl Words<'_> {
         number.value.into_iter().for_each(|value| self.formula(value, &arguments));
     }
 
-    /// Adds the words of a formula, or the number that stands for it.
+    /// Adds the words of a formula, or the number in place of a formula.
     fn formula(&mut self, word: Word, variables: &[&str]) {
         if self.is_number(word) {
             return self.word(word, TokenKind::Number);
@@ -227,7 +227,7 @@ impl Words<'_> {
         }
     }
 
-    /// Adds comments, and the keys that are no part of an entity.
+    /// Adds comments, and the keys outside of entities.
     fn rest_of_toml(&mut self) {
         for event in events(self.view.text.as_str()).0 {
             let place = event.span().start()..event.span().end();
@@ -250,7 +250,7 @@ mod tests {
     use crate::editor::{Text, read};
     use crate::registry::Registry;
 
-    /// Returns the words of a text with the names of their kinds; those of definitions end with `!`.
+    /// Returns the words of a text with the names of their kinds. Words of definitions are marked by `!`.
     fn told(file: &str, text: &str) -> String {
         let view = read(Registry::get().expect("plugins"), file, Text::new(text));
         let word = |token: SemanticToken| {

@@ -1,11 +1,11 @@
-//! The values of an attribute while they are written: their names, and which value comes next.
+//! The values of an attribute during typing: their names, and the index of the current one.
 
 use super::hover::about;
 use super::types::value_name;
 use super::view::View;
 use std::ops::Range;
 
-/// The values that an attribute takes.
+/// The values of an attribute.
 #[derive(Clone, Debug)]
 pub struct Signature {
     /// The attribute with its values: `center x y z`.
@@ -14,7 +14,7 @@ pub struct Signature {
     pub values: Vec<Range<u32>>,
     /// The index of the value at the position.
     pub active: usize,
-    /// More about the attribute, in Markdown.
+    /// A description of the attribute, in Markdown.
     pub about: String,
 }
 
@@ -50,7 +50,7 @@ pub fn signature(view: &View, at: usize) -> Option<Signature> {
         label += &name;
         values.push(start..label.encode_utf16().count() as u32);
     }
-    // A list goes on with its first values.
+    // A list continues with the names of its first values.
     let active = if before < count { before } else { before % known.each().len().max(1) };
     Some(Signature { label, values, active, about: about(view.syntax, known) })
 }

@@ -1,4 +1,4 @@
-//! Texts with places to fill in, as editors write them: `radius ${1:N}`.
+//! Snippets: texts with placeholders in the notation of editors, such as `radius ${1:N}`.
 
 use super::types::{ExpectedValue, expected_value, value_name};
 use super::view::{Entity, View};
@@ -6,10 +6,10 @@ use crate::syntax::Syntax;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::entity;
 
-/// The most alternatives of a place to fill in.
+/// The maximum number of alternatives of a placeholder.
 const MOST: usize = 30;
 
-/// A text with places to fill in, which are numbered from 1.
+/// A text with placeholders, numbered from 1.
 pub struct Snippet<'v> {
     pub text: String,
     places: usize,
@@ -19,7 +19,7 @@ pub struct Snippet<'v> {
 }
 
 impl<'v> Snippet<'v> {
-    /// Begins with nothing.
+    /// Makes an empty snippet.
     pub fn new(view: &'v View, names: &'v dyn Fn(tabray_core::scene::kind::Kind) -> Vec<String>) -> Self {
         Self { text: String::new(), places: 0, view, names }
     }
@@ -30,7 +30,7 @@ impl<'v> Snippet<'v> {
         self.text += &format!("${{{}:{shown}}}", self.places);
     }
 
-    /// Adds a place with alternatives, or the text that is shown if there are none.
+    /// Adds a placeholder with alternatives, or with the text `or` if there are none.
     fn one_of(&mut self, all: &[String], or: &str) {
         if all.is_empty() {
             return self.place(or);
@@ -66,7 +66,7 @@ impl<'v> Snippet<'v> {
             }
             ExpectedValue::Name(kind) => {
                 let all = (self.names)(kind);
-                // The last one is the one that was defined for this.
+                // The last entity was probably defined for this use.
                 let all: Vec<_> = all.into_iter().rev().collect();
                 self.quoted(|snippet| snippet.one_of(&all, &kind.to_string()));
             }
@@ -87,7 +87,7 @@ impl<'v> Snippet<'v> {
         }
     }
 
-    /// Adds a word, in quotes where the syntax needs them.
+    /// Adds a word, in quotes if the syntax needs them.
     fn quoted(&mut self, word: impl FnOnce(&mut Self)) {
         let quote = if self.view.syntax == Syntax::Toml { "\"" } else { "" };
         self.text += quote;
@@ -95,7 +95,7 @@ impl<'v> Snippet<'v> {
         self.text += quote;
     }
 
-    /// Adds an attribute, whose name is padded to a width.
+    /// Adds an attribute, with its name padded to a width.
     pub fn attribute(&mut self, entity: &Entity, attribute: &dyn Attribute, width: usize) {
         self.text += &format!("{:width$} ", attribute.name());
         if self.view.syntax == Syntax::Toml {
@@ -104,7 +104,8 @@ impl<'v> Snippet<'v> {
         self.values(entity, attribute);
     }
 
-    /// Adds an entity with the attributes that a scene must give. In TOML a bracket may be there already.
+    /// Adds an entity with the required attributes. In TOML, `has_bracket` tells whether the opening bracket is already
+    /// there.
     pub fn entity(&mut self, known: &'static entity::Entity, has_bracket: bool) {
         let mut wanted: Vec<_> =
             known.attributes().filter(|attribute| attribute.default().is_none()).collect();
@@ -138,7 +139,7 @@ impl<'v> Snippet<'v> {
     }
 }
 
-/// Makes an entity of a type that is nowhere in the text.
+/// Makes an entity of a type, without a place in the text.
 fn blank(known: &'static entity::Entity) -> Entity {
     let nowhere = super::view::Word { start: 0, end: 0, form: super::view::Form::Bare };
     Entity {

@@ -1,4 +1,4 @@
-//! Tests of all answers together: on the scenes of the repository, and on texts that random edits make of them.
+//! Tests of all answers together, on the scenes of the repository and on random edits of them.
 
 use super::*;
 use crate::dump;
@@ -18,7 +18,7 @@ fn registry() -> &'static Registry {
     Registry::get().expect("no two plugins claim one name")
 }
 
-/// Returns the files of a folder and of those in it, sorted.
+/// Returns the files of a folder and its subfolders, sorted.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in folder.read_dir().expect("a folder") {
@@ -33,7 +33,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Returns the scenes of the repository that are texts, with what they say.
+/// Returns the text scenes of the repository, with their contents.
 fn scenes() -> Vec<(PathBuf, String)> {
     let all = files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
     let is_scene = |path: &PathBuf| path.extension().is_some_and(|end| end == "ray" || end == "toml");
@@ -45,7 +45,7 @@ fn view(path: &Path, text: &str) -> View {
     read(registry(), &path.to_string_lossy(), Text::new(text))
 }
 
-/// Returns what a scene says without its form: its dump, or its faults.
+/// Returns the content of a scene regardless of its form: its dump, or its errors.
 fn meaning(path: &Path, text: &str) -> Result<String, Vec<String>> {
     let folder = path.parent().expect("a folder");
     match reader::read(registry(), "a scene", folder, text.as_bytes(), None) {
@@ -73,7 +73,7 @@ fn formatting_changes_neither_meaning_nor_comments_and_ends_at_once() {
             text.lines().filter(|line| !line.contains('"')).filter_map(comment).collect()
         };
         assert_eq!(comments(&new), comments(&text), "{}", path.display());
-        // Large scenes take long to load, and are made of nothing else than the others.
+        // Large scenes take long to load, and have the same elements as the others.
         if text.len() < 1 << 16 {
             assert_eq!(meaning(&path, &new), meaning(&path, &text), "{}", path.display());
         }
@@ -239,7 +239,7 @@ fn open(files: &[(&Path, &str)]) -> Open {
     Open(files.iter().map(|(path, text)| (path.to_path_buf(), Arc::new(view(path, text)))).collect())
 }
 
-/// Applies changes of one file to its text.
+/// Applies the changes of one file to its text.
 fn changed(text: &str, path: &Path, mut changes: Vec<(Location, String)>) -> String {
     let mut text = text.to_owned();
     changes.sort_by_key(|(found, _)| std::cmp::Reverse(found.place.start));
@@ -260,7 +260,7 @@ fn a_name_that_is_changed_there_and_back_leaves_the_text_as_it_was() {
         let first = open(&[(&path, &text)]);
         let all = first.0[&path].names();
         for definition in all.definitions.iter().take(20) {
-            // Lights may share a name, and quotes that a name does not need are not written again.
+            // Lights may share a name, and unneeded quotes of a name are not written again.
             let at = definition.name.place.start;
             let is_shared = all.named(definition.name.namespace, &definition.name.text).len() > 1;
             if is_shared || text[..at].ends_with(['"', '\'']) {
@@ -329,7 +329,7 @@ fn ask(path: &Path, text: &Text, at: usize) {
     }
 }
 
-/// Random edits of scenes, of which each is followed by all questions: TABRAY_EDITS of them, or a thousand.
+/// Random edits of scenes, each followed by all questions: `TABRAY_EDITS` of them, or a thousand.
 #[test]
 fn a_text_that_is_edited_at_random_has_answers() {
     let edits = std::env::var("TABRAY_EDITS").map_or(1000, |edits| edits.parse().expect("a number"));

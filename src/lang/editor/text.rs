@@ -1,4 +1,4 @@
-//! A text and its lines. Positions are those of editors: lines from 0, and units of UTF-16 from 0.
+//! A text and its lines. Positions are those of editors: lines and UTF-16 units, both from 0.
 
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -14,7 +14,7 @@ pub struct Position {
     pub character: u32,
 }
 
-/// A text and where its lines begin. Clones share both.
+/// A text and the starts of its lines. Clones share both.
 #[derive(Clone, Debug)]
 pub struct Text {
     text: Arc<str>,
@@ -22,7 +22,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// Finds the lines of a text: each ends with a line feed, a carriage return, or both.
+    /// Finds the lines of a text. Each ends with a line feed, a carriage return, or both.
     pub fn new(text: impl Into<Arc<str>>) -> Self {
         let text = text.into();
         let bytes = text.as_bytes();
@@ -37,7 +37,7 @@ impl Text {
         &self.text
     }
 
-    /// Returns the text, to be kept beside this one.
+    /// Returns the text with shared ownership.
     pub fn shared(&self) -> Arc<str> {
         self.text.clone()
     }
@@ -54,7 +54,7 @@ impl Text {
         self.starts.partition_point(|start| *start <= at).saturating_sub(1)
     }
 
-    /// Returns the position of a byte. For a byte within a character, that is the position of the character.
+    /// Returns the position of a byte. A byte within a character has the position of the character.
     pub fn position(&self, at: usize) -> Position {
         let at = boundary(&self.text, at);
         let line = self.line_of(at);
@@ -103,7 +103,7 @@ mod tests {
             assert_eq!(text.position(at), Position { line, character }, "{at}");
             assert_eq!(text.offset(Position { line, character }), at);
         }
-        // Within a character, after the end of a line, and after the end of the text.
+        // The positions are within a character, after the end of a line, and after the end of the text.
         assert_eq!(text.offset(Position { line: 0, character: 2 }), 1);
         assert_eq!(text.offset(Position { line: 1, character: 9 }), 10);
         assert_eq!(text.offset(Position { line: 9, character: 9 }), 13);
@@ -122,7 +122,7 @@ mod tests {
             let whole = Text::new(text.as_str());
             for (at, _) in text.char_indices().filter(|(at, _)| !text[..*at].ends_with('\r')) {
                 let position = whole.position(at);
-                // What a client does that keeps its text as UTF-16.
+                // A client that keeps its text as UTF-16 computes the same.
                 let lines: Vec<&str> = text.split('\n').collect();
                 let units: Vec<u16> = lines[position.line as usize].encode_utf16().collect();
                 let before = lines[..position.line as usize].iter().map(|line| line.len() + 1).sum::<usize>();

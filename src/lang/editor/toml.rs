@@ -1,4 +1,4 @@
-//! Reads a text in TOML as far as possible.
+//! The tolerant reader of a text in TOML.
 
 use super::toml_events::events;
 use super::view::{Attribute, Entity, Form, Include, Item, Let, Repeat, Word};
@@ -11,13 +11,13 @@ use toml_parser::Span;
 use toml_parser::decoder::Encoding;
 use toml_parser::parser::{Event, EventKind};
 
-/// The most parts of a key. Longer ones are skipped.
+/// The maximum number of parts of a key. Longer keys are skipped.
 const MOST_PARTS: usize = 128;
 
-/// The number of last items that are searched for one that continues.
+/// The number of last items that are searched for an item to continue.
 const NEAR: usize = 64;
 
-/// Parses a text into items, and returns where it is not in the form of a scene.
+/// Parses a text into items, and returns its syntax errors.
 pub fn read(registry: &Registry, text: &str) -> (Vec<Item>, Vec<Fault>) {
     let (events, breaks) = events(text);
     let mut reader = Reader { registry, text, items: Vec::new(), path: Path::new() };
@@ -33,11 +33,11 @@ struct Reader<'a> {
     registry: &'a Registry,
     text: &'a str,
     items: Vec<Item>,
-    /// The parts of the last value's path. They are here, so that their memory is used again.
+    /// The parts of the last value's path, kept here to reuse their memory.
     path: Path,
 }
 
-/// A value that is being read: its key, the first byte after the `=`, and the words so far.
+/// The current value: its key, the first byte after the `=`, and the words so far.
 #[derive(Default)]
 struct Leaf {
     key: Path,
@@ -67,7 +67,7 @@ impl Reader<'_> {
     }
 
     fn all(&mut self, events: &[Event]) {
-        // The table that the text is in, and the tables on one line around the position.
+        // The current table, and the inline tables around the position.
         let (mut table, mut outer): (Path, Vec<Path>) = (Path::new(), Vec::new());
         let (mut title, mut arrays) = (None, 0_usize);
         let mut leaf = Leaf::default();
@@ -135,7 +135,7 @@ impl Reader<'_> {
         self.leaf(&table, &outer, leaf);
     }
 
-    /// Ends the body of an entity that stands on one line.
+    /// Ends the body of a single-line entity.
     fn end_of_line(&mut self, brace: Span) {
         if let Some(Item::Entity(entity)) = last(&mut self.items) {
             entity.place.end = brace.end();
@@ -143,7 +143,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Begins the item that a title names, unless the title continues the last one.
+    /// Begins the item of a title, unless the title continues the last one.
     fn open(&mut self, path: &[Word], title: Range<usize>, is_new: bool) {
         if path.len() > MOST_PARTS {
             return;
@@ -152,7 +152,7 @@ impl Reader<'_> {
         open(registry, text, &mut self.items, path, &title, is_new);
     }
 
-    /// Adds a value to what its key names.
+    /// Adds a value to the item of its key.
     fn leaf(&mut self, table: &[Word], outer: &[Path], leaf: Leaf) {
         let Some(first) = leaf.key.first().map(|first| first.start) else { return };
         let mut path = take(&mut self.path);
@@ -178,7 +178,7 @@ fn says(text: &str, word: Word) -> &str {
     &text[word.inner()]
 }
 
-/// Returns the item that continues at the end.
+/// Returns the last, innermost item, which may continue.
 fn last(items: &mut [Item]) -> Option<&mut Item> {
     let goes_on = matches!(items.last(), Some(Item::Repeat(repeat)) if !repeat.items.is_empty());
     match (items.last_mut()?, goes_on) {
@@ -187,7 +187,7 @@ fn last(items: &mut [Item]) -> Option<&mut Item> {
     }
 }
 
-/// Finds what is repeated under a name, or begins it.
+/// Finds the `repeat` with a name, or begins it.
 fn repeated<'i>(
     text: &str,
     items: &'i mut Vec<Item>,
@@ -249,7 +249,7 @@ fn open(
             open(registry, text, &mut repeat.items, rest, title, is_new);
         }
         (None, [kind]) => {
-            // `[sphere` is half written; `[sphere]` has its names below it.
+            // `[sphere` is incomplete, and `[sphere]` has its names below it.
             items.push(Item::Entity(entity(registry, text, *kind, None, title)));
         }
         (None, [kind, name, ..]) => {
@@ -271,7 +271,7 @@ fn entity(registry: &Registry, text: &str, kind: Word, name: Option<Word>, title
     }
 }
 
-/// Adds a value where its key says.
+/// Adds a value to the item of its key.
 fn value(
     registry: &Registry,
     text: &str,
@@ -319,7 +319,7 @@ fn value(
             });
         }
         (None, [kind, key]) => {
-            // A title that has no name yet.
+            // The title has no name yet.
             if let Some(Item::Entity(entity)) = items.last_mut()
                 && entity.name.is_none()
                 && entity.kind == *kind
@@ -338,7 +338,7 @@ fn value(
     }
 }
 
-/// Lets the body of each item that has a title of its own reach to the next one.
+/// Extends the body of each item that has its own title to the next item.
 fn end_bodies(items: &mut [Item], end: usize) {
     let starts: Vec<_> = items.iter().map(|item| item.place().start).skip(1).chain([end]).collect();
     for (item, next) in items.iter_mut().zip(starts) {

@@ -1,4 +1,4 @@
-//! What toml_parser finds in a text, and what is wrong with its form.
+//! The events of toml_parser in a text, and syntax errors.
 
 use crate::reader::{Fault, LINE, long_line};
 use std::ops::Range;
@@ -20,7 +20,7 @@ pub fn events(text: &str) -> (Vec<Event>, Vec<Fault>) {
     (events, errors.iter().map(fault).collect())
 }
 
-/// Returns what is wrong within a key, a value, a comment or a line end, which the events do not show.
+/// Returns an error within a key, a value, a comment or a line end, which the events do not show.
 pub fn wrong_word(text: &str, events: &[Event]) -> Option<Fault> {
     if let Some(line) = long_line(text) {
         return Some(Fault::error(Some(line), format!("this line is longer than {LINE} bytes")));

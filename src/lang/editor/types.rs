@@ -1,4 +1,4 @@
-//! The types of an attribute's values, for all code here that depends on them. A new type of values is added here.
+//! The types of an attribute's values, for all editor code that depends on them. New types of values are added here.
 
 use super::view::{Entity, View};
 use tabray_core::scene::attribute::Attribute;
@@ -31,7 +31,7 @@ pub fn expected_value(entity: &Entity, attribute: &dyn Attribute) -> ExpectedVal
         Type::Whole | Type::Number | Type::Rotation => ExpectedValue::Numbers,
         Type::Formula(variables) => ExpectedValue::Formula(variables),
         Type::File => ExpectedValue::File,
-        // What a texture is read from is a file, whatever the type of its name.
+        // A texture is read from a file, whatever the type of the attribute.
         Type::Word if entity.known.is_some_and(|known| known.kind() == Kind::Texture) => ExpectedValue::File,
         Type::Word => ExpectedValue::Word,
         Type::Name(kind) => ExpectedValue::Name(kind),
@@ -40,13 +40,13 @@ pub fn expected_value(entity: &Entity, attribute: &dyn Attribute) -> ExpectedVal
     }
 }
 
-/// Returns the name of the value of this index in a row, or an empty string where it has none.
+/// Returns the name of the value with this index in a row, or an empty string if it has none.
 pub fn value_name(attribute: &dyn Attribute, index: usize) -> &'static str {
     let names = attribute.each();
     if names.is_empty() { "" } else { names[index % names.len()] }
 }
 
-/// Returns the words that stand for yes and no.
+/// Returns the words for yes and no.
 pub fn truths(view: &View) -> [&'static str; 2] {
     match view.syntax {
         crate::syntax::Syntax::Notes => ["yes", "no"],

@@ -1,5 +1,4 @@
-//! The content of a text as far as it can be recognised: entities, attributes and values with their places, in either
-//! syntax.
+//! The recognised content of a text: entities, attributes and values with their places, in either syntax.
 
 use super::named::Names;
 use super::text::Text;
@@ -21,14 +20,14 @@ pub enum Item {
     Entity(Entity),
     /// A named number.
     Let(Let),
-    /// Files that are included.
+    /// Included files.
     Include(Include),
     /// A `repeat`.
     Repeat(Repeat),
 }
 
 impl Item {
-    /// Returns the range of its text.
+    /// Returns the range of the item's text.
     pub fn place(&self) -> &Range<usize> {
         match self {
             Self::Entity(entity) => &entity.place,
@@ -42,31 +41,31 @@ impl Item {
 /// An entity.
 #[derive(Debug)]
 pub struct Entity {
-    /// Its type, as it is written.
+    /// The type as written.
     pub kind: Word,
-    /// Its type, if there is one of this name.
+    /// The type in the registry, if known.
     pub known: Option<&'static entity::Entity>,
-    /// Its name.
+    /// The name.
     pub name: Option<Word>,
-    /// The other places of its name: TOML may write it with each attribute.
+    /// The other places of the name: TOML may repeat it with each attribute.
     pub again: Vec<Word>,
     pub attributes: Vec<Attribute>,
     pub place: Range<usize>,
-    /// The range in which its attributes stand or may stand.
+    /// The range of the attributes, including room for more.
     pub body: Range<usize>,
 }
 
 /// An attribute and its values.
 pub struct Attribute {
-    /// Its name.
+    /// The name.
     pub name: Word,
-    /// The attribute in the table of the entity's type, if it has one of this name.
+    /// The attribute in the table of the entity's type, if known.
     pub known: Option<&'static dyn attribute::Attribute>,
-    /// The first byte after the `=` in TOML, or after the name otherwise; `None` where there is no `=` yet.
+    /// The first byte after the `=` in TOML, or else after the name, or `None` if there is no `=` yet.
     pub values_from: Option<usize>,
-    /// Its values, as they are written.
+    /// The values as written.
     pub values: Vec<Word>,
-    /// The first byte after it.
+    /// The first byte after the attribute.
     pub end: usize,
 }
 
@@ -84,7 +83,7 @@ pub struct Let {
     pub place: Range<usize>,
 }
 
-/// Files that are included.
+/// Included files.
 #[derive(Debug)]
 pub struct Include {
     pub files: Vec<Word>,
@@ -95,13 +94,13 @@ pub struct Include {
 #[derive(Debug)]
 pub struct Repeat {
     pub name: Option<Word>,
-    /// The other places of its name.
+    /// The other places of the name.
     pub again: Vec<Word>,
     pub count: Option<Word>,
-    /// What it says, in the order of the text.
+    /// The repeated items, in the order of the text.
     pub items: Vec<Item>,
     pub place: Range<usize>,
-    /// The range in which its entities stand or may stand.
+    /// The range of the entities, including room for more.
     pub body: Range<usize>,
 }
 
@@ -110,23 +109,23 @@ pub struct Repeat {
 pub struct View {
     /// The text.
     pub text: Text,
-    /// The syntax in which it is read.
+    /// The syntax of the text.
     pub syntax: Syntax,
-    /// What it says, in the order of the text.
+    /// The items, in the order of the text.
     pub items: Vec<Item>,
-    /// Where the text is not in the form of a scene; empty if it is.
+    /// The syntax errors.
     pub breaks: Vec<Fault>,
-    /// The names, once they are found.
+    /// The names, found on first use.
     pub(super) names: OnceLock<Names>,
 }
 
 impl View {
-    /// Makes the view of a text from what was read of it.
+    /// Makes the view of a text from its items and syntax errors.
     pub fn new(text: Text, syntax: Syntax, (items, breaks): (Vec<Item>, Vec<Fault>)) -> Self {
         Self { text, syntax, items, breaks, names: OnceLock::new() }
     }
 
-    /// Returns the text of a range; of one that is not in the text, nothing.
+    /// Returns the text of a range, or an empty text for a range outside.
     pub fn slice(&self, place: Range<usize>) -> &str {
         self.text.as_str().get(place).unwrap_or_default()
     }
@@ -143,7 +142,7 @@ impl View {
         }
     }
 
-    /// Calls a function with each item and with the items that repeat it, from the outermost one inward.
+    /// Calls a function with each item and the `repeat`s around it, from the outermost one inward.
     pub fn visit<'v>(&'v self, visit: &mut dyn FnMut(&'v Item, &[&'v Repeat])) {
         fn walk<'v>(
             items: &'v [Item],
@@ -162,7 +161,7 @@ impl View {
         walk(&self.items, &mut Vec::new(), visit);
     }
 
-    /// Returns the innermost item whose text, or whose place for more text, has a position.
+    /// Returns the innermost item at a position, including the room for more text.
     pub fn at(&self, at: usize) -> Option<&Item> {
         let has = |item: &&Item| {
             let body = match item {
@@ -175,7 +174,7 @@ impl View {
         let mut found: Option<&Item> = None;
         let mut items = &self.items;
         loop {
-            // Where one ends and the next begins, the next one is meant.
+            // At the border between two items, the next one counts.
             let after = items.partition_point(|item| item.place().start <= at);
             let Some(item) = items[..after].iter().rev().take(2).find(has) else { return found };
             found = Some(item);
@@ -194,7 +193,7 @@ impl View {
         }
     }
 
-    /// Returns the entity with a name, if the name stands in the text once and the entity is not repeated.
+    /// Returns the entity with a name, if the name occurs only once and the entity is not repeated.
     pub fn entity(&self, name: &str) -> Option<&Entity> {
         let mut found = self.items.iter().filter_map(|item| match item {
             Item::Entity(entity) if entity.name.is_some_and(|word| self.word(word) == name) => Some(entity),
@@ -203,8 +202,7 @@ impl View {
         found.next().filter(|_| found.next().is_none())
     }
 
-    /// Returns the place for one more attribute of an entity, and the text that must separate it from the attributes
-    /// before.
+    /// Returns the place for one more attribute of an entity, and the separator before it.
     pub fn room(&self, entity: &Entity) -> (usize, String) {
         let (at, is_first) = match entity.attributes.last() {
             Some(last) => (last.end, false),
@@ -214,7 +212,7 @@ impl View {
         if self.slice(entity.place.clone()).contains('\n') {
             let line = &before[before.rfind('\n').map_or(0, |end| end + 1)..];
             let indent = &line[..line.len() - line.trim_start().len()];
-            // A comment stays with what it is about.
+            // A comment stays with its attribute.
             let rest = after.lines().next().unwrap_or_default();
             let is_last = !is_first && (rest.trim().is_empty() || rest.trim_start().starts_with('#'));
             return (at + if is_last { rest.len() } else { 0 }, format!("\n{indent}"));
@@ -223,7 +221,7 @@ impl View {
         (at, between.to_owned())
     }
 
-    /// Tells whether a text computes a value of an attribute of numbers.
+    /// Tells whether a formula computes a value of an attribute of numbers.
     pub fn computes(&self, entity: &Entity, attribute: &str) -> bool {
         let mut given = entity
             .attributes
@@ -232,7 +230,7 @@ impl View {
         given.any(|given| given.values.iter().any(|word| word.form != Form::Bare))
     }
 
-    /// Tells whether anything in the text belongs to a scene: a file in TOML may be about something else.
+    /// Tells whether the text has items of a scene. A TOML file may be about something else.
     pub fn is_scene(&self) -> bool {
         self.syntax == Syntax::Notes
             || self.items.iter().any(|item| match item {
@@ -242,7 +240,7 @@ impl View {
     }
 }
 
-/// Returns the text of a word in quotes in TOML.
+/// Returns the text of a quoted word in TOML.
 fn unescaped(quoted: &str) -> Cow<'_, str> {
     let encoding = if quoted.starts_with("\"\"\"") { Encoding::MlBasicString } else { Encoding::BasicString };
     let raw = Raw::new_unchecked(quoted, Some(encoding), Span::new_unchecked(0, quoted.len()));

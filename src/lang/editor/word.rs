@@ -1,28 +1,28 @@
-//! Words of a text: where they stand, and how they are quoted.
+//! Words of a text: their places and quotes.
 
 use std::ops::Range;
 
 /// A word of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Word {
-    /// The first byte, that of the quote if it has one.
+    /// The first byte, including an opening quote.
     pub start: usize,
-    /// The first byte after it.
+    /// The first byte after the word.
     pub end: usize,
     /// The form of its quotes.
     pub form: Form,
 }
 
-/// The forms of quotes around a word.
+/// The quotes around a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Not at all.
+    /// No quotes.
     Bare,
-    /// By quotes of this many bytes at each end, with escape sequences in between.
+    /// Quotes of this many bytes at each end, with escape sequences in between.
     Quoted(u8),
-    /// By quotes that this many bytes at each end are, without escape sequences.
+    /// Quotes of this many bytes at each end, without escape sequences in between.
     Literal(u8),
-    /// Only by a quote at its beginning.
+    /// Only an opening quote.
     Unclosed,
 }
 
@@ -32,7 +32,7 @@ impl Word {
         self.start..self.end
     }
 
-    /// Returns the range of the word within its quotes.
+    /// Returns the range of the word without its quotes.
     pub fn inner(self) -> Range<usize> {
         let (before, after) = match self.form {
             Form::Bare => (0, 0),
@@ -43,7 +43,7 @@ impl Word {
         start..(self.end - after).max(start)
     }
 
-    /// Tells whether a cursor is at the word: in it, or at one of its ends.
+    /// Tells whether a cursor is in the word, or at one of its ends.
     pub fn has(self, at: usize) -> bool {
         (self.start..=self.end).contains(&at)
     }

@@ -1,4 +1,4 @@
-//! Asks a scene what rays truly hit: `cargo run -p tabray-lang --example rays`.
+//! Asks for the exact hits of rays with a scene: `cargo run -p tabray-lang --example rays`.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -15,11 +15,11 @@ const SCENE: &str = "
     sphere   twin { material grey  center 3 0 0  radius 5 }
 ";
 
-/// Says what is proven about three rays.
+/// Describes the proven hits of three rays.
 pub fn answer() -> Result<String, Box<dyn std::error::Error>> {
     let loaded = read(Registry::get()?, "scene", Path::new(""), SCENE.as_bytes(), None)?;
     let query = Query::new(&loaded.model);
-    // A ray's direction may have any length: t counts its lengths.
+    // A ray's direction may have any length, and is the unit of t.
     let rays: Vec<_> =
         [[-9.0, 0.0, 0.0, 3.0, 0.0, 0.0], [0.0, 0.0, 9.0, 1.0, 1.0, 0.0], [1.5, 0.0, 9.0, 0.0, 0.0, -1.0]]
             .iter()

@@ -1,4 +1,4 @@
-//! Reads a scene, asks what a ray hits first, and renders it: `cargo run -p tabray-lang --example scene`.
+//! Reads a scene, finds the first hit of a ray, and renders the scene: `cargo run -p tabray-lang --example scene`.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -16,7 +16,7 @@ const SCENE: &str = "
     light    lamp  { location 0 8 2  emissivity 12 12 12 }
 ";
 
-/// Says what the ray through the middle of the image hits, and shows the image by letters.
+/// Describes the hit of the ray through the middle of the image, and shows the image as letters.
 pub fn answer() -> Result<String, Box<dyn std::error::Error>> {
     let loaded = read(Registry::get()?, "scene", Path::new(""), SCENE.as_bytes(), None)?;
     let plan = Plan::new(&loaded.model);

@@ -1,29 +1,29 @@
-//! Reads a formula of SURFER or surf, and writes it as one of a scene.
+//! Reads a formula of SURFER or surf, and converts it to the notation of scenes.
 
 use crate::reader::Fault;
 use glam::DMat3;
 use std::ops::Range;
 use tabray_core::text::shortest;
 
-/// How deep parentheses, signs and powers may nest.
+/// The maximum nesting of parentheses, signs and powers.
 const DEEPEST: usize = 200;
 
-/// The greatest length of a formula that is written, in bytes: a script multiplies what it names.
+/// The maximum length of a converted formula, in bytes. A script multiplies the formulas that it names.
 const LONGEST: usize = 1 << 20;
 
 /// A formula in x, y and z, or a number.
 #[derive(Clone, Debug)]
 pub struct Value {
-    /// The formula as a scene writes it.
+    /// The formula in the notation of scenes.
     pub text: String,
     level: Level,
-    /// Its value, where it is a number.
+    /// The value of a number.
     pub number: Option<f64>,
-    /// How the surface on which it is 0 was turned since.
+    /// The pending rotation of the formula's zero set.
     pub turn: DMat3,
 }
 
-/// How tightly the outermost operation of a formula binds.
+/// The precedence of a formula's outermost operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Sum,
@@ -33,7 +33,7 @@ enum Level {
 }
 
 impl Value {
-    /// Makes a number that has a name.
+    /// Makes a number with a name.
     pub fn named(name: &str, number: f64) -> Self {
         Self { text: name.to_owned(), level: Level::Atom, number: Some(number), turn: DMat3::IDENTITY }
     }
@@ -42,37 +42,37 @@ impl Value {
         Self { text, level, number, turn: DMat3::IDENTITY }
     }
 
-    /// Returns the formula in parentheses if it binds less tightly.
+    /// Returns the formula, in parentheses if its precedence is lower.
     fn within(&self, level: Level) -> String {
         if self.level < level { format!("({})", self.text) } else { self.text.clone() }
     }
 }
 
-/// What names stand for.
+/// The meanings of names.
 pub trait Names {
-    /// Returns what a name stands for; `None` where it is unknown.
+    /// Returns the value of a name, or `None` if it is unknown.
     fn value(&self, name: &str) -> Option<Value>;
 
-    /// Names a formula as a function of x, y and z.
+    /// Defines a function of x, y and z by a formula, and returns its name.
     fn function(&mut self, formula: &str) -> String;
 
-    /// Says what to write instead of an unknown name.
+    /// Returns a suggestion for an unknown name.
     fn help(&self, name: &str) -> String;
 }
 
-/// How signs and powers bind.
+/// The precedence of signs and powers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
-    /// `-x^2` is -(x^2), and powers of powers are read from the right.
+    /// `-x^2` is -(x^2), and powers are right-associative.
     Surfer,
-    /// `-x^2` is (-x)^2, and powers of powers are read from the left.
+    /// `-x^2` is (-x)^2, and powers are left-associative.
     Surf,
 }
 
-/// A function: as it is called there and in scenes, and what it computes.
+/// A function: its name there and in scenes, and its computation.
 type Function = (&'static str, &'static str, fn(f64) -> f64);
 
-/// The functions of both.
+/// The functions of both programs.
 const FUNCTIONS: [Function; 17] = [
     ("sin", "sin", libm::sin),
     ("cos", "cos", libm::cos),
@@ -93,10 +93,10 @@ const FUNCTIONS: [Function; 17] = [
     ("sign", "sign", |x| if x < 0.0 { -1.0 } else { 1.0 }),
 ];
 
-/// What is read, or what is wrong with it.
+/// The result of reading, or an error.
 pub type Read<T> = Result<T, Box<Fault>>;
 
-/// Reads the formula that a range of a text holds.
+/// Reads the formula in a range of a text.
 pub fn read(text: &str, range: Range<usize>, dialect: Dialect, names: &mut dyn Names) -> Read<Value> {
     let mut reader = Reader { text, at: range.start, end: range.end, dialect, names, depth: 0 };
     let value = reader.sum()?;
@@ -107,7 +107,7 @@ pub fn read(text: &str, range: Range<usize>, dialect: Dialect, names: &mut dyn N
     }
 }
 
-/// Turns a surface around an axis as surf does: around y the other way round.
+/// Returns the rotation of a surface around an axis as in surf, with the opposite direction around y.
 pub fn turn(axis: usize, angle: f64) -> DMat3 {
     let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
     let rows = match axis {
@@ -118,7 +118,7 @@ pub fn turn(axis: usize, angle: f64) -> DMat3 {
     DMat3::from_cols_array_2d(&rows).transpose()
 }
 
-/// Writes a sum of multiples of x, y and z and a constant.
+/// Writes a linear combination of x, y and z plus a constant.
 pub fn linear(factors: [f64; 3], constant: f64) -> String {
     let mut text = String::new();
     let terms = factors.into_iter().zip(["x", "y", "z"]).chain([(constant, "")]);
@@ -149,7 +149,7 @@ struct Reader<'t, 'n> {
 }
 
 impl Reader<'_, '_> {
-    /// Returns the next character that is no white space, and goes to it. A `\` at the end of a line continues it.
+    /// Skips white space, and returns the next character. A `\` at the end of a line continues the line.
     fn peek(&mut self) -> Option<char> {
         loop {
             let rest = &self.text[self.at..self.end];
@@ -183,12 +183,12 @@ impl Reader<'_, '_> {
         read
     }
 
-    /// Returns a formula in which no turn is left to be done.
+    /// Returns the formula with its pending rotation applied.
     fn done(&mut self, value: Value) -> Value {
         if value.turn == DMat3::IDENTITY {
             return value;
         }
-        // The turned surface is where the formula is 0 of the point turned back.
+        // The rotated surface consists of the points with a zero of the formula after the inverse rotation.
         let back = value.turn.transpose();
         let arguments = [0, 1, 2].map(|row| linear(back.row(row).to_array(), 0.0)).join(", ");
         let name = self.names.function(&value.text);
@@ -198,7 +198,7 @@ impl Reader<'_, '_> {
     fn joined(&mut self, one: Value, sign: &str, other: Value, level: Level) -> Read<Value> {
         let (one, other) = (self.done(one), self.done(other));
         let (left, right) = match level {
-            // On the right, the operation itself needs parentheses: a - (b - c).
+            // A right operand of the same precedence needs parentheses: a - (b - c).
             Level::Sum => (Level::Sum, Level::Product),
             Level::Product => (Level::Product, Level::Power),
             _ => (Level::Atom, Level::Atom),
@@ -333,7 +333,7 @@ impl Reader<'_, '_> {
                 .help("write a number as `2` or `0.5e-3`")
         })?;
         self.at += end;
-        // Scenes have digits on both sides of a point.
+        // Scenes require digits on both sides of a decimal point.
         let is_plain = whole > 0
             && rest[whole..]
                 .strip_prefix('.')

@@ -1,4 +1,4 @@
-//! Files of SURFER, and of jsurf, which draws for it: properties of Java, one on a line.
+//! Files of SURFER and its renderer, jsurf: Java properties, one on a line.
 
 use super::expression::{self, Dialect, Names, Read, Value};
 use super::notes::Notes;
@@ -10,7 +10,7 @@ use std::ops::Range;
 use tabray_core::text::shortest;
 use tabray_exact::formula::is_taken;
 
-/// The width and height of the image: files do not say it.
+/// The width and height of the image, which files do not give.
 const PIXELS: u32 = 480;
 
 /// The number of lamps.
@@ -77,13 +77,13 @@ impl Names for Parameters {
     }
 }
 
-/// One property: its name and its value.
+/// A property: its name and its value.
 struct Entry {
     key: Range<usize>,
     value: Range<usize>,
 }
 
-/// Returns the properties of a file. A line that ends in `\` goes on in the next one.
+/// Returns the properties of a file. A line that ends in `\` continues on the next one.
 fn entries(text: &str) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut at = 0;
@@ -118,12 +118,12 @@ fn entries(text: &str) -> Vec<Entry> {
 struct File<'t> {
     text: &'t str,
     entries: Vec<Entry>,
-    /// The names of properties that were asked for.
+    /// The names of the properties that were used.
     used: RefCell<Vec<String>>,
 }
 
 impl File<'_> {
-    /// Returns where the value of a property stands: the last one counts.
+    /// Returns the place of a property's value. The last occurrence counts.
     fn find(&self, key: &str) -> Option<Range<usize>> {
         self.used.borrow_mut().push(key.to_owned());
         let entry = self.entries.iter().rfind(|entry| self.text[entry.key.clone()] == *key)?;
@@ -134,7 +134,7 @@ impl File<'_> {
         self.find(key).map(|range| &self.text[range])
     }
 
-    /// Returns the numbers of a property, or others where it is not given.
+    /// Returns the numbers of a property, or the default if it is not given.
     fn numbers<const N: usize>(&self, key: &str, default: [f64; N], notes: &mut Notes) -> [f64; N] {
         let Some(range) = self.find(key) else { return default };
         let words = self.text[range.clone()].split_whitespace();
@@ -156,7 +156,7 @@ impl File<'_> {
         DVec3::from(self.numbers(key, [default; 3], notes)).max(DVec3::ZERO)
     }
 
-    /// Returns a matrix that is written row by row: its linear part and its offset.
+    /// Returns the linear part and the offset of a matrix in row order.
     fn matrix(&self, key: &str, notes: &mut Notes) -> (DMat3, DVec3) {
         let m = self.numbers(key, MATRIX, notes);
         let row = |at: usize| DVec3::new(m[at], m[at + 1], m[at + 2]);
@@ -167,7 +167,7 @@ impl File<'_> {
         let colour = self.colour(&format!("{side}_material_color"), 0.5, notes);
         let [ambient] = self.numbers(&format!("{side}_material_ambient_intensity"), [0.1], notes);
         let [diffuse] = self.numbers(&format!("{side}_material_diffuse_intensity"), [0.232_32], notes);
-        // Of highlights, which are left out, one word is enough.
+        // Highlights are omitted, and one message about them is enough.
         self.find(&format!("{side}_material_shininess"));
         if side == "back" {
             for key in ["specular_intensity", "specular_iIntensity"] {
@@ -193,8 +193,8 @@ impl File<'_> {
         let (surface, surface_moved) = self.matrix("surface_transform_matrix", notes);
         let [scale] = self.numbers("scale_factor", [0.0], notes);
         let scale = libm::pow(10.0, scale);
-        // The picture's z is 0 at the distance by which the camera is moved. The maps lead from there to the
-        // coordinates in which a ball of radius 1 around 0 cuts the surface, and on to the coordinates of the formula.
+        // The picture's z is 0 at the distance of the moved camera. From there, the maps lead to coordinates where a
+        // ball of radius 1 around 0 cuts the surface, and on to the coordinates of the formula.
         let middle = DVec3::new(0.0, 0.0, moved.z);
         let to_ball = transform * rotation * camera.inverse();
         let ball_moved = transform_moved + transform * rotation_moved - to_ball * (moved - middle);

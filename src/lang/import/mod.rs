@@ -1,6 +1,6 @@
-//! Surfaces in the files of other programs: SURFER's `.jsurf`, and the scripts of surf 1.0.6. [`scene`] writes what
-//! such a file shows as a scene in the notes' syntax: the unchanged formula with its parameters, seen from the same
-//! side, cut by the same body, and in the same colours.
+//! Imports surfaces from files of other programs: SURFER's `.jsurf`, and the scripts of surf 1.0.6. [`scene`] converts
+//! such a file to a scene in the notes' syntax: the unchanged formula with its parameters, seen from the same side, cut
+//! by the same body, and in the same colours.
 
 mod expression;
 mod jsurf;
@@ -17,21 +17,20 @@ use notes::Notes;
 use program::Program;
 use std::path::Path;
 
-/// What a file of another program shows.
+/// The contents of another program's file.
 pub struct Imported {
     /// The scene, in the notes' syntax.
     pub text: String,
-    /// What the scene shows in another way.
+    /// The differences in the scene's appearance.
     pub warnings: Report,
-    /// The words that do not affect the picture, in the order of the file, each with the line where it first stands.
+    /// The words that do not affect the picture, in the order of the file, each with the line of its first occurrence.
     pub left: Vec<(String, usize)>,
 }
 
-/// Returns what a file shows, if its name is that of such a program's file or, where the name is not that of a scene,
-/// if its text is. `name` is what messages call it.
+/// Converts a file of another program, recognised by its name or, unless the name is that of a scene, by its text.
+/// `name` is the file's name in messages.
 ///
-/// # Errors
-/// Returns the faults of the file.
+/// # Errors Returns the errors of the file.
 pub fn scene(name: &str, bytes: &[u8]) -> Result<Option<Imported>, Report> {
     let by_name = Program::of_name(name);
     if by_name.is_none()

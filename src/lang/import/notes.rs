@@ -1,11 +1,11 @@
-//! The messages about a file of another program.
+//! Messages about a file of another program.
 
 use crate::reader::{Fault, Report};
 
-/// What is to be said of a file.
+/// The messages about a file.
 pub(super) struct Notes {
     pub report: Report,
-    /// Words that have no part in what is seen, and where they stand.
+    /// The words that do not affect the picture, and their places.
     pub left: Vec<(String, usize)>,
 }
 

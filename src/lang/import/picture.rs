@@ -1,43 +1,43 @@
-//! What a file of SURFER or surf shows, and how a scene says it.
+//! The picture of a file of SURFER or surf, and its conversion to a scene.
 
 use super::expression::{Value, linear};
 use glam::{DMat3, DVec3};
 use std::fmt::Write;
 use tabray_core::text::shortest;
 
-/// How much the axes of a view may differ from each other and from right angles, relative to their length: files have
-/// seven digits.
+/// The tolerance for the axes of a view, which should have equal lengths and right angles, relative to their length.
+/// Files have seven digits.
 const SIMILAR: f64 = 1e-5;
 
-/// The distance from the middle to which a picture without a clip reaches, in heights of the picture.
+/// The extent of a picture without a clip from the middle, in heights of the picture.
 const DEEP: f64 = 5.0;
 
-/// What is seen, in the coordinates of the picture: x right, y up and z toward the viewer.
+/// A picture, in its own coordinates: x right, y up and z toward the viewer.
 pub struct Picture {
     /// Named numbers, each with its formula.
     pub numbers: Vec<(String, String)>,
     /// Functions of x, y and z.
     pub functions: Vec<(String, String)>,
     pub surfaces: Vec<Surface>,
-    /// The body that cuts the surfaces open.
+    /// The bodies that cut the surfaces open.
     pub clips: Vec<Clip>,
     pub lights: Vec<Light>,
     pub background: DVec3,
-    /// The width and height of what is seen.
+    /// The width and height of the visible rectangle.
     pub size: [f64; 2],
     pub pixels: [u32; 2],
 }
 
-/// A surface, and how it lies in the picture.
+/// A surface, and its placement in the picture.
 pub struct Surface {
     pub formula: Value,
-    /// From the picture's coordinates to those of the formula: a linear map and an offset.
+    /// The map from the picture's coordinates to those of the formula: a linear map and an offset.
     pub map: (DMat3, DVec3),
-    /// Outside, where the formula is above 0, and inside.
+    /// The outer side, where the formula is positive, and the inner side.
     pub sides: [Look; 2],
 }
 
-/// How one side looks.
+/// The appearance of one side.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Look {
     pub ambient: DVec3,
@@ -50,7 +50,7 @@ pub struct Light {
     pub colour: DVec3,
 }
 
-/// What a surface is cut by.
+/// A body that cuts a surface.
 pub enum Clip {
     /// A ball, by its centre and radius.
     Ball(DVec3, f64),
@@ -58,14 +58,14 @@ pub enum Clip {
     Cylinder(DVec3, f64),
     /// A cube, by its centre and half its side.
     Cube(DVec3, f64),
-    /// The half of space on one side of a plane across the z axis: below the plane if the sign is 1, above it if the
+    /// A half-space on one side of a plane across the z axis: below the plane if the sign is 1, and above it if the
     /// sign is -1.
     Plane(f64, f64),
 }
 
 impl Picture {
-    /// Writes the scene. Its coordinates are those of the formula, so that the formula stays as it is. Where there are
-    /// several formulas in different places, or a stretched one, the coordinates are those of the picture.
+    /// Writes the scene. Its coordinates are those of the formula, which stays unchanged. With several formulas in
+    /// different places, or a stretched one, the coordinates are those of the picture.
     pub fn scene(&self) -> String {
         let common = self.surfaces[0].map;
         let is_common = self.surfaces.iter().all(|surface| surface.map == common) && is_similar(common.0);
@@ -151,7 +151,7 @@ impl Picture {
         matches!(self.clips[..], [Clip::Ball(..)])
     }
 
-    /// Returns a box around what is kept, in the picture's coordinates.
+    /// Returns a box around the visible parts, in the picture's coordinates.
     fn bounds(&self) -> [DVec3; 2] {
         let [wide, high] = self.size;
         // Without a clip, the surface is cut at the edges of the picture, with a margin for the outermost pixels.
@@ -175,7 +175,8 @@ impl Picture {
         bounds
     }
 
-    /// Writes a formula in the scene's coordinates that is below 0 where the surface is kept; empty if all is.
+    /// Writes a formula in the scene's coordinates that is negative where the surface is kept, or an empty text if all
+    /// of it is.
     fn clip(&self, turn: DMat3, offset: DVec3) -> String {
         let back = turn.inverse();
         let size = turn.x_axis.length();
@@ -219,7 +220,7 @@ impl Picture {
     }
 }
 
-/// Tells whether a map keeps shapes, and does not mirror them.
+/// Tells whether a map preserves shapes without mirroring them.
 fn is_similar(map: DMat3) -> bool {
     let size = map.x_axis.length_squared();
     let product = map.transpose() * map - DMat3::from_diagonal(DVec3::splat(size));
@@ -236,7 +237,7 @@ fn material(name: &str, look: &Look) -> String {
     )
 }
 
-/// Writes a colour, to a thousandth of what a byte tells apart.
+/// Writes a colour to six decimals, a small fraction of a byte's step.
 fn colour(of: DVec3) -> String {
     point((1e6 * of).round() / 1e6)
 }
@@ -245,7 +246,7 @@ fn point(at: DVec3) -> String {
     at.to_array().map(number).join(" ")
 }
 
-/// Writes a number to 12 digits: those after it are of rounding.
+/// Writes a number to 12 digits, because further digits are rounding errors.
 fn number(of: f64) -> String {
     shortest(format!("{of:.11e}").parse::<f64>().unwrap_or(of) + 0.0)
 }

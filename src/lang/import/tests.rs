@@ -59,7 +59,7 @@ fn formulas_mean_what_each_program_takes_them_for() {
             "{formula}"
         );
     }
-    // The surface is turned, and so its points are turned back.
+    // The surface is rotated, and so the inverse rotation applies to its points.
     assert_eq!(
         written("rotate(x, 2*a, zAxis) + 0", Dialect::Surf).replace(char::is_numeric, ""),
         "turned(.*x + .*y, -.*x + .*y, z) + "
@@ -83,7 +83,7 @@ fn a_fault_in_a_formula_has_its_place() {
     assert!(written(&deep, Dialect::Surf).starts_with("the formula nests more than 200 deep here"));
 }
 
-/// Returns the scene of a file, which must be one, and the words that are left out.
+/// Returns the scene of a file, which must be valid, the omitted words, and the warnings.
 fn imported(name: &str, text: &str) -> (String, Vec<(String, usize)>, String) {
     let Imported { text, warnings, left } = scene(name, text.as_bytes())
         .unwrap_or_else(|report| panic!("{report}"))
@@ -127,7 +127,7 @@ fn a_file_of_surfer_is_a_scene() {
     assert!(text.contains("let a 1.5\nlet b 0.25\n") && !text.contains("let c"), "{text}");
     assert!(text.contains("x^2 + y^2 - a*z - b"), "{text}");
     assert!(text.contains("width    6.32455532034\n"), "{text}");
-    // What is up in the picture is the surface's -x.
+    // The direction up in the picture is the surface's -x.
     assert!(text.contains("up       -3.16227766017 0 0\n"), "{text}");
     assert!(text.contains("ambient 0.4 0.2 0") && text.contains("sides both { back back }"), "{text}");
     assert_eq!(text.matches("\nlight ").count(), 1, "{text}");
@@ -170,7 +170,7 @@ fn a_script_of_surf_is_a_scene() {
 #[test]
 fn a_surface_lies_in_the_picture_where_surf_draws_it() {
     let mut notes = Notes { report: Report::new("a", "", Syntax::Notes), left: Vec::new() };
-    // Measured in pictures of surf 1.0.6: where the middle of the ball around 3 1 2 is seen.
+    // The positions of the middle of the ball around 3 1 2 are measured in pictures of surf 1.0.6.
     for (script, [x, y]) in [
         ("", [3.0, 1.0]),
         ("rot_x = 0.5;", [3.0, -0.081]),

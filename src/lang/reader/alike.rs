@@ -1,8 +1,8 @@
-//! Entities with the same words as another one, but for names and numbers: a scene may have millions. An entity that is parsed
-//! in the memory of such a one takes its places, and no word is looked up.
+//! Entities with the same words as another one, except for names and numbers: a scene may have millions. Such an entity
+//! is parsed in the memory of the other one, and no word is looked up.
 //!
-//! What the grammar makes of a text depends on a number only in that it begins as one does, and not at all on a name. So an
-//! entity whose other words are those of an entity that was parsed has the same attributes, with as many values each.
+//! The grammar only depends on the beginnings of numbers, and not on names. An entity with otherwise the same words as
+//! a parsed entity thus has the same attributes, with the same numbers of values.
 
 use super::guesses::looks_like_number;
 use super::parsed::{Form, Parsed, Word};
@@ -10,7 +10,7 @@ use super::tokens::{after_space, plain_word};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// An entity that was parsed.
+/// A parsed entity.
 pub struct Alike {
     /// The range of its type.
     pub kind: Range<usize>,
@@ -19,8 +19,8 @@ pub struct Alike {
 }
 
 impl<'a> Parsed<'a> {
-    /// Becomes the entity that begins at a byte of a text, if it has the same words. Otherwise this entity is no longer of
-    /// use.
+    /// Replaces this entity by the one that begins at a byte of a text, if that has the same words. Otherwise, this
+    /// entity becomes invalid.
     pub(super) fn become_alike(&mut self, text: &'a str, at: usize) -> Option<Alike> {
         let mut words = Words { text, at: after_space(text, at) };
         let start = words.at;
@@ -52,7 +52,7 @@ struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Puts the next word, and its place, in place of another one, for which a condition holds. Neither may be in quotes.
+    /// Replaces a word by the next one, with its place, if a condition holds for both. Neither may be quoted.
     #[inline]
     fn next(&mut self, word: &mut Word<'a>, is_alike: impl FnOnce(&str, &str) -> bool) -> bool {
         let start = after_space(self.text, self.at);
@@ -66,7 +66,7 @@ impl<'a> Words<'a> {
         true
     }
 
-    /// Returns the end of the brace that comes next, if one does.
+    /// Returns the end of the next brace, if it is this one.
     fn brace(&mut self, brace: u8) -> Option<usize> {
         let at = after_space(self.text, self.at);
         self.at = at + 1;
@@ -84,7 +84,7 @@ mod tests {
     use crate::syntax::Syntax;
     use proptest::prelude::*;
 
-    /// Parses a text, with room for this many entities at a time, in the memory of earlier ones or not.
+    /// Parses a text, with room for this many entities at once, in the memory of earlier ones or not.
     fn parsed(text: &str, together: usize, reuses: bool) -> String {
         let registry = Registry::get().expect("no two plugins claim one name");
         let sources = Sources::alone("scene", text, ReadOptions::default());

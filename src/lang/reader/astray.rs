@@ -1,17 +1,17 @@
-//! Guesses which file was meant by a name that leads nowhere: one with another extension, or one folder off.
+//! Guesses of the intended file for a name that does not exist: one with another extension, or in a nearby folder.
 
 use std::path::{Component, Path, PathBuf};
 use tabray_core::text::{nearest_file, shown};
 
-/// The extensions of images that textures can be.
+/// The extensions of supported images.
 const IMAGES: [&str; 13] =
     ["ppm", "png", "pgm", "pbm", "pnm", "jpg", "jpeg", "webp", "bmp", "tif", "tiff", "hdr", "exr"];
 
-/// The maximum number of folders that are searched, and of files in each.
+/// The maximum number of searched folders, and of files in each.
 const FOLDERS: usize = 64;
 const FILES: usize = 4096;
 
-/// Returns the name of the image that was probably meant by one that a scene in `folder` has and that does not exist.
+/// Returns the name of the image that a scene in `folder` probably meant by a name that does not exist.
 pub fn image(folder: &Path, written: &str) -> Option<String> {
     let slashes = written.replace('\\', "/");
     if slashes != written && folder.join(&slashes).is_file() {
@@ -28,14 +28,14 @@ pub fn image(folder: &Path, written: &str) -> Option<String> {
     found.map(shown)
 }
 
-/// Returns the folders around one that a scene names, relative to the scene's folder.
+/// Returns the folders near the one that a scene names, relative to the scene's folder.
 fn places(folder: &Path, own: &Path) -> Vec<PathBuf> {
     let up = Path::new("..");
     let mut places = vec![up.join(own)];
     let mut rest = own.components();
     if rest.next().is_some_and(|first| matches!(first, Component::ParentDir | Component::Normal(_))) {
         places.push(rest.as_path().to_owned());
-        // Without any of its `..`, and beside the scene.
+        // This is the path without any `..`, beside the scene.
         let is_up = |part: &Component<'_>| *part == Component::ParentDir;
         places.push(own.components().filter(|part| !is_up(part)).collect());
     }
@@ -44,7 +44,7 @@ fn places(folder: &Path, own: &Path) -> Vec<PathBuf> {
         let entries = folder.join(within).read_dir().into_iter().flatten().take(FILES);
         let folders = entries.filter_map(Result::ok).filter(|entry| entry.path().is_dir());
         let mut folders: Vec<_> = folders.map(|folder| within.join(folder.file_name())).collect();
-        // A folder lists its entries in any order.
+        // The order of a folder's entries is arbitrary.
         folders.sort_unstable();
         places.extend(folders);
     }
@@ -52,7 +52,7 @@ fn places(folder: &Path, own: &Path) -> Vec<PathBuf> {
     places
 }
 
-/// Returns the name of an image in a folder that has the same name but for its extension and for capital letters.
+/// Returns the name of an image in a folder with the same name except for its extension and letter case.
 fn like(folder: &Path, written: &Path) -> Option<String> {
     let stem = written.file_stem()?.to_str()?;
     let entries = if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.read_dir().ok()?;

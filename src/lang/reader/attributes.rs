@@ -1,4 +1,4 @@
-//! Checks one parsed entity against the table of its type.
+//! The check of a parsed entity against the table of its type.
 
 use super::fault::{Fault, Place};
 use super::guesses::{find_attribute, near_attribute};
@@ -16,7 +16,7 @@ use tabray_core::scene::store::Store;
 use tabray_core::scene::value::{Datum, Type};
 use tabray_core::text::{self, list};
 
-/// Checks an entity against the table of its type and reports its faults.
+/// Checks an entity against the table of its type, and reports its errors and warnings.
 pub struct AttributeChecker<'c, 't> {
     /// The types of entities.
     pub registry: &'c Registry,
@@ -26,12 +26,12 @@ pub struct AttributeChecker<'c, 't> {
     pub names: &'c mut Names,
     /// The entities and values so far.
     pub store: &'c Store,
-    /// The report that faults are added to.
+    /// The report that receives errors and warnings.
     pub report: &'c mut Report<'t>,
 }
 
 impl AttributeChecker<'_, '_> {
-    /// Returns a datum for each attribute of the type, or `None` if a fault was reported.
+    /// Returns a datum for each attribute of the type, or `None` after reporting an error.
     pub fn values(&mut self, parsed: &Parsed<'_>) -> Option<Vec<AttributeValue>> {
         let entity = self.entity;
         let title = match parsed.name.text.as_ref() {
@@ -69,7 +69,7 @@ impl AttributeChecker<'_, '_> {
             let datum = match given {
                 Some((word, words)) => self.datum(*attribute, &title, word, words),
                 None => {
-                    // An attribute that may be present, misspelt or unreadable, is not reported as missing.
+                    // An attribute that may be present but misspelt or unreadable is not reported as missing.
                     let may_be_there = meant.contains(&attribute.name()) || parsed.is_damaged;
                     if attribute.default().is_none() && !may_be_there {
                         missing.push(*attribute);
@@ -92,8 +92,7 @@ impl AttributeChecker<'_, '_> {
         sound.then_some(values)
     }
 
-    /// Tells whether exactly one attribute of each required group is given, and reports the groups for which this is
-    /// not so.
+    /// Tells whether exactly one attribute of each required group is given, and reports the other groups.
     fn groups(
         &mut self,
         title: &str,
@@ -106,7 +105,7 @@ impl AttributeChecker<'_, '_> {
         for group in self.entity.groups() {
             let of_group = || attributes.iter().zip(given).filter(|(a, _)| group.names.contains(&a.name()));
             let there: Vec<_> = of_group().filter_map(|(a, given)| Some((a.name(), (*given)?))).collect();
-            // An attribute that may be present, misspelt or unreadable, is not reported as missing.
+            // An attribute that may be present but misspelt or unreadable is not reported as missing.
             let may_be_there = parsed.is_damaged || group.names.iter().any(|name| meant.contains(name));
             sound &= there.len() == 1;
             if let [_, (_, (word, words)), ..] = there[..] {
@@ -131,7 +130,7 @@ impl AttributeChecker<'_, '_> {
         sound
     }
 
-    /// Reports attributes that the type does not have, and returns those that were probably meant.
+    /// Reports attributes that the type does not have, and returns the attributes that they probably meant.
     fn unknown_attributes(
         &mut self,
         title: &str,
@@ -146,7 +145,7 @@ impl AttributeChecker<'_, '_> {
             given.is_none() && attribute.default().is_none() && !near.contains(&Some(attribute.name()))
         });
         let missing: Vec<_> = missing.map(|(attribute, _)| *attribute).collect();
-        // As many attributes are unknown as are missing, with as many numbers each: other programs use these names.
+        // If as many attributes are unknown as are missing, with as many numbers each, other programs use these names.
         let strange: Vec<_> = (0..unknown.len()).filter(|index| near[*index].is_none()).collect();
         let fits = |(index, attribute): (&usize, &&dyn Attribute)| {
             let values = unknown[*index].1;
@@ -163,7 +162,7 @@ impl AttributeChecker<'_, '_> {
         near.into_iter().flatten().collect()
     }
 
-    /// Reports an attribute that the type does not have, with the one that was probably meant, if any.
+    /// Reports an attribute that the type does not have, with the attribute that it probably meant, if any.
     fn unknown_attribute(&mut self, title: &str, word: &Word<'_>, near: Option<&str>) {
         let entity = self.entity;
         let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
@@ -179,7 +178,7 @@ impl AttributeChecker<'_, '_> {
         self.report.add(fault.help(format!("{} takes {names}", text::with_article(entity.name))));
     }
 
-    /// Checks the values of one attribute for type, number and rule.
+    /// Checks the values of one attribute: their type, their number and their rule.
     fn datum(
         &mut self,
         attribute: &'static dyn Attribute,
@@ -203,8 +202,8 @@ impl AttributeChecker<'_, '_> {
                 self.store.datum(index).clone()
             }
             (Type::Name(kind), [name]) if name.form != Form::Number => {
-                // An optional object is a part of the object that names it, as an object that clips a surface is. The
-                // original of a copy is not such a part.
+                // An optional object, such as the clip of a surface, becomes a part of the object that names it. The
+                // original of a copy does not.
                 self.names.combines |= kind == Kind::Object && attribute.default().is_some();
                 self.names.resolve(self.store, kind, name)
             }
@@ -231,7 +230,7 @@ impl AttributeChecker<'_, '_> {
         Some(datum)
     }
 
-    /// Returns the objects of these names, and reports names that are given twice.
+    /// Returns the objects with these names, and reports repeated names.
     fn objects(&mut self, kind: Kind, title: &str, words: &[Word<'_>]) -> Option<Datum> {
         self.names.combines = true;
         let (mut all, mut is_right) = (Vec::with_capacity(words.len()), true);
@@ -250,7 +249,7 @@ impl AttributeChecker<'_, '_> {
     }
 }
 
-/// Returns what is wrong if words cannot be values of an attribute at all, or if it takes a different number of values.
+/// Returns an error if words cannot be values of an attribute at all, or if their number is wrong.
 fn fault_of_values(
     attribute: &dyn Attribute,
     title: &str,
@@ -275,7 +274,7 @@ fn fault_of_values(
     Some(Fault::error(whole(word, words), message).help(meaning(attribute)))
 }
 
-/// Returns what is wrong if an attribute's value breaks its rule, or if squares of it overflow.
+/// Returns an error if an attribute's value breaks its rule, or if its square overflows.
 fn fault_of_value(
     attribute: &dyn Attribute,
     datum: &Datum,

@@ -1,4 +1,4 @@
-//! Makes a [`Model`] of a scene's entities.
+//! Makes a [`Model`] from a scene's entities.
 
 use super::check::{Check, Source, TOGETHER};
 use super::fault::{Fault, Places, Severity};
@@ -16,11 +16,11 @@ use tabray_core::scene::model::{Item, Model};
 use tabray_core::scene::store::{Record, Store};
 use tabray_core::text::list;
 
-/// A model, the places of its entities, and the time that it took to make, in addition to parsing.
+/// A model, the places of its entities, and the time for making it, without parsing.
 pub type Checked = (Option<Model>, Places, Duration);
 
-/// Makes a model of entities and reports all their faults. Returns a model only if the scene has no faults. File names
-/// are relative to `folder`. If the text has syntax errors, it is not read to its end.
+/// Makes a model from entities, and reports all their errors and warnings. Returns a model only for a scene without
+/// errors. File names are relative to `folder`. A text with syntax errors is not read to its end.
 pub fn model(
     registry: &Registry,
     folder: &Path,
@@ -52,7 +52,7 @@ pub fn model(
             }
         }
         Source::Text(_, parser) => {
-            // While some are checked, the next ones are parsed.
+            // While some entities are checked, the next ones are parsed.
             let [mut memory, mut other] = [vec![None; TOGETHER], vec![None; TOGETHER]];
             let mut count = parser.entities(&mut memory);
             while count > 0 {
@@ -69,7 +69,7 @@ pub fn model(
         }
     }
     let start = now();
-    // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
+    // Objects and lights are constructed last, because they may need the camera, which may come later in the text.
     let store = check.construct_waiting(source);
     check.textures_can_be_read(&store, source);
     check.light_by_background(&store, source);
@@ -81,7 +81,7 @@ pub fn model(
 pub const NO_CAMERA: &str = "the scene has no camera";
 
 impl Check<'_, '_> {
-    /// Returns the model, after reporting the faults that show only when the whole scene has been read.
+    /// Returns the model, after reporting the errors that only the whole scene shows.
     fn finish(mut self, store: &Arc<Store>, source: &Source<'_, '_>) -> (Option<Model>, Places) {
         let mut camera_misspelt = false;
         self.report.count_more(Severity::Error, self.unknown.others().count());

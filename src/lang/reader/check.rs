@@ -34,19 +34,19 @@ use tabray_core::world::rules::Rules;
 use tabray_core::world::sensor::Sensor;
 use tabray_core::world::texture::Texture;
 
-/// The entities of a scene: parsed while they are checked, or all of them parsed before.
+/// The entities of a scene, parsed during the check or before it.
 pub enum Source<'s, 'a> {
     /// A text in the notes' syntax, and its parser.
     Text(&'a str, Box<Parser<'a, 's>>),
     /// A long text in TOML, as a function that returns the next entities until there are none. Entities are not kept:
     /// if there is anything to report about them, the text is read again as a list.
     Stream(Box<dyn FnMut() -> Vec<Parsed<'a>> + Send + 's>),
-    /// Entities in their order.
+    /// Entities, in order.
     List(&'s [Parsed<'a>]),
 }
 
 impl<'a> Source<'_, 'a> {
-    /// Returns an entity whose place is known.
+    /// Returns an entity, given its place.
     pub(super) fn entity(
         &self,
         registry: &Registry,
@@ -65,13 +65,13 @@ impl<'a> Source<'_, 'a> {
     }
 }
 
-/// The number of entities that are parsed and then checked at one time: 8 times what a thread checks at one time.
+/// The number of entities that are parsed and then checked together: 8 times that of one thread.
 pub(super) const TOGETHER: usize = 1 << 11;
-/// The number of entities that a thread checks at one time.
+/// The number of entities that a thread checks together.
 pub(super) const PIECE: usize = 1 << 8;
 
-/// The default limit on the memory of all textures of a scene, in bytes: far more than scenes need, and far less than a
-/// small file can claim to hold.
+/// The default limit for the memory of all textures of a scene, in bytes: far more than scenes need, and far less than
+/// a small file can claim.
 const TEXTURE_MEMORY: u64 = 1 << 30;
 
 pub(super) struct Check<'r, 't> {
@@ -85,36 +85,36 @@ pub(super) struct Check<'r, 't> {
     /// The place of the first background's name.
     first_background: Option<Place>,
     pub(super) setting: Arc<Setting>,
-    /// The accuracy and the rules of light that override the scene's own.
+    /// The accuracy and the rules of light that override those of the scene.
     above_all: (Option<Accuracy>, Option<Rules>),
-    /// Whether there is no warning of entities that share a name and are all used.
+    /// Whether entities that share a name and are all used are allowed without a warning.
     pub(super) may_share_names: bool,
-    /// Whether there is no warning of colours that may be meant to be from 0 to 255.
+    /// Whether colours that may be meant as 0 to 255 are allowed without a warning.
     may_be_bright: bool,
-    /// The entities as they were given, and where.
+    /// The given entities, and their places.
     pub(super) store: Store,
     pub(super) places: Places,
-    /// What was constructed, with the orders of the entities.
+    /// The constructed entities, with their orders.
     pub(super) camera: Option<(usize, Sensor)>,
     pub(super) materials: Vec<(usize, Arc<Material>)>,
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files, and whether they cut surfaces out.
     files: HashMap<(PathBuf, bool), Arc<Texture>>,
     pub(super) shaders: Vec<(usize, ShaderFactory)>,
-    /// How many more bytes the images of textures may take.
+    /// The memory left for the images of textures, in bytes.
     pub(super) texture_memory: u64,
     pub(super) objects: Vec<Object>,
     /// The objects that other entities refer to.
     pub(super) patterns: Vec<Item<NamedBody>>,
     pub(super) lights: Vec<Item<Lamp>>,
-    /// The warning of colours from 0 to 255, if there is one.
+    /// The warning about colours from 0 to 255, if any.
     pub(super) levels: Option<Fault>,
     pub(super) background: Option<(usize, Arc<dyn Background>)>,
     quick: Quick<'r>,
 }
 
 impl<'r, 't> Check<'r, 't> {
-    /// Begins to check a scene whose file names are relative to `folder`.
+    /// Begins the check of a scene. Its file names are relative to `folder`.
     pub fn new(
         registry: &'r Registry,
         folder: &Path,
@@ -155,11 +155,11 @@ impl<'r, 't> Check<'r, 't> {
 }
 
 impl Check<'_, '_> {
-    /// Checks some entities that follow each other.
+    /// Checks some consecutive entities.
     pub(super) fn entities<'p>(&mut self, parsed: &[&'p Parsed<'p>]) {
         let mut rest = parsed;
         while let Some(first) = rest.first() {
-            // What others can refer to is defined before they are checked, and so is each type.
+            // Entities that others can refer to, and types, are defined before the entities that use them are checked.
             let waiting = rest.iter().take_while(|parsed| self.quick.waits(&self.store, parsed)).count();
             if waiting == 0 {
                 self.entity(first);
@@ -186,7 +186,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Takes over entities that were checked, and checks an entity again if there is something to report about it.
+    /// Takes over checked entities. An entity with something to report is checked again.
     fn take(&mut self, parsed: &[&Parsed<'_>], quick: &Quick<'_>) {
         for (parsed, packed) in parsed.iter().zip(quick.packed()) {
             match packed {
@@ -203,7 +203,8 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Checks an entity against its table. An entity that others can refer to is constructed at once; the others wait.
+    /// Checks an entity against its table. An entity that others can refer to is constructed at once, and the others
+    /// wait.
     fn entity(&mut self, parsed: &Parsed<'_>) {
         let order = self.store.count();
         self.places.add(&parsed.place);
@@ -244,7 +245,7 @@ impl Check<'_, '_> {
             let args = Args::new(entity, text.to_string(), order, values, self.setting.clone());
             self.construct(parsed, &args);
         }
-        // If the entity is faulty, a stand-in takes its place, so that the entities that refer to it are checked too.
+        // A placeholder replaces a faulty entity, and so the entities that refer to it are checked, too.
         if counts
             && matches!(entity.kind(), Kind::Material | Kind::Texture | Kind::Shader)
             && self.names.defined(entity.kind(), text).is_none()
@@ -297,7 +298,7 @@ impl Check<'_, '_> {
             Construct::Texture(construct) => {
                 if let Some(texture) = self.made(parsed, args, construct) {
                     self.report.add_file(texture.path().to_owned());
-                    // Equal textures share one image, so that its file is read once.
+                    // Equal textures share one image, and so its file is read once.
                     let texture = match self.files.entry((texture.path().to_owned(), texture.cuts_out())) {
                         Entry::Occupied(known) => known.get().clone(),
                         Entry::Vacant(free) => free.insert(Arc::new(texture)).clone(),
@@ -320,7 +321,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Warns of the colours of a material if they are from 0 to 255; one warning stands for all materials.
+    /// Warns of the colours of a material if they are from 0 to 255, with one warning for all materials.
     fn warn_of_levels(&mut self, parsed: &Parsed<'_>, args: &Args) {
         let Some((attribute, fault)) = levels::warning(args).filter(|_| !self.may_be_bright) else { return };
         let place = place_of(args.entity, parsed, Some(attribute));
@@ -342,7 +343,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Calls a constructor with checked values and reports a refusal.
+    /// Calls a constructor with checked values, and reports a refusal.
     fn made<T>(
         &mut self,
         parsed: &Parsed<'_>,
@@ -366,7 +367,7 @@ impl Check<'_, '_> {
     }
 }
 
-/// Returns the place of an attribute with its values, or of the entity's name where the attribute is not given.
+/// Returns the place of an attribute with its values, or of the entity's name if the attribute is not given.
 pub(super) fn place_of(entity: &'static Entity, parsed: &Parsed<'_>, attribute: Option<&str>) -> Place {
     let known = |word: &Word<'_>| find_attribute(entity, &word.text).map(|known| known.name());
     let given = attribute

@@ -1,16 +1,16 @@
-//! From a file's bytes to a scene's text, or to what is wrong with them.
+//! Decodes a file's bytes as a scene's text, or reports errors.
 
 use super::fault::Fault;
 use super::report::Report;
 use crate::syntax::Syntax;
 
-/// The number of pairs of bytes that are looked at to recognise UTF-16 without a mark, and the least number that tells.
+/// The number of pairs of bytes for recognising UTF-16 without a byte order mark, and the minimum number.
 const PAIRS: [usize; 2] = [8, 256];
 
 /// Decodes a file's bytes as UTF-8 text.
 ///
 /// # Errors
-/// Returns the encoding that the text probably has, or the first place that is not UTF-8 text.
+/// Returns the probable encoding of the text, or the first place that is not UTF-8 text.
 pub fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report<'static>> {
     if let Some(encoding) = utf_16(bytes) {
         let mut report = Report::new(name, String::new(), Syntax::default());
@@ -36,21 +36,21 @@ pub fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report<'static
             (nul..nul + 1, "unexpected NUL byte")
         }
     };
-    // Up to the fault, the lossy text has the same bytes.
+    // Up to the error, the lossy text has the same bytes.
     let mut report = Report::new(name, String::from_utf8_lossy(bytes).into_owned(), Syntax::default());
     let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));
     Err(report)
 }
 
-/// Returns the encoding that a text in another one than UTF-8 probably has.
+/// Returns the probable encoding of a text that is not UTF-8.
 pub fn other(bytes: &[u8]) -> Option<&'static str> {
     let bad = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
     let in_one_byte = || windows_1252(bytes, bad?).map(|(encoding, _)| encoding);
     utf_16(bytes).or_else(in_one_byte)
 }
 
-/// Returns the encoding of a text in UTF-16: one that begins with its mark, or in which nearly every other byte is zero.
+/// Returns the encoding of a text in UTF-16, which has a byte order mark, or zeros in nearly every other byte.
 fn utf_16(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0xff, 0xfe, rest @ ..] if rest.len() % 2 == 0 => return Some("UTF-16"),
@@ -69,8 +69,8 @@ fn utf_16(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Reads bytes as text of one byte per letter, and returns the encoding. The first byte that is not ASCII is at `bad`.
-/// `None` if there are control characters, so that the bytes are not text.
+/// Reads bytes as text with one byte per character, and returns the encoding. The first byte that is not ASCII is at
+/// `bad`. Returns `None` for control characters, which are not text.
 fn windows_1252(bytes: &[u8], bad: usize) -> Option<(&'static str, String)> {
     let is_text = |byte: &u8| !byte.is_ascii_control() || matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c);
     if !bytes[..bad].is_ascii() || !bytes.iter().all(is_text) {

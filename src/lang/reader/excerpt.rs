@@ -1,4 +1,4 @@
-//! Renders faults as text: a message, and the lines of the scene that it concerns, shortened to what can be read.
+//! Renders errors and warnings as text: a message, with the lines of the scene that it marks, shortened if needed.
 
 use super::fault::{Fault, Place, Severity};
 use super::parts::{Lines, Parts};
@@ -6,15 +6,16 @@ use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippe
 use std::ops::Range;
 use tabray_core::text::{self, boundary};
 
-/// The longest excerpt that is shown in full, in bytes, from the first marked line to the last. In a longer one, each
-/// marked place is shown separately.
+/// The maximum length of an excerpt that is shown in full, in bytes, from the first marked line to the last. In a
+/// longer one, each marked place is shown separately.
 const WHOLE: usize = 4096;
 
-/// How many bytes of an overlong line are shown before and after a mark, and the greatest length of the mark itself.
+/// The number of bytes of a long line that are shown before and after a mark, and the maximum length of the mark
+/// itself.
 const AROUND: usize = 48;
 const MARK: usize = 64;
 
-/// Renders a fault as text.
+/// Renders an error or a warning as text.
 pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String {
     let level = match fault.severity {
         Severity::Error => Level::ERROR,
@@ -44,11 +45,11 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
         .collect();
     let elsewhere =
         elsewhere.iter().map(|(piece, label, name)| piece.element(AnnotationKind::Context, label, name));
-    // Only the marked lines are passed on: a long scene with many faults must not be scanned over and over.
+    // Only the marked lines are passed on, because scanning a long scene for each of many errors would be slow.
     let first = marks.iter().map(|(place, _)| place.start).min().unwrap_or(0);
     let last = marks.iter().map(|(place, _)| place.end).max().unwrap_or(0);
     let lines = lines(text, first..last, newlines);
-    // The renderer shows some of what is not seen, in its own ways.
+    // The renderer shows some invisible characters in its own ways.
     let is_seen = |letter: char| letter == '\n' || letter == '\t' || !text::is_unseen(letter);
     if lines.len() <= WHOLE && text[lines.clone()].replace("\r\n", "\n").chars().all(is_seen) {
         let shift = |place: &Range<usize>| place.start - lines.start..place.end - lines.start;
@@ -70,7 +71,7 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
         piece.element(std::mem::replace(&mut kind, AnnotationKind::Context), label, name)
     });
     let rendered = renderer.render(&[title.elements(elements).elements(elsewhere).elements(notes)]);
-    // The renderer only knows the columns of the shortened line, so the true ones are put in.
+    // The renderer only knows the columns of the shortened line, which are replaced by the true ones.
     pieces.iter().fold(rendered, |rendered, (piece, _)| {
         let [shown, column] =
             [piece.shown, piece.column].map(|column| format!("{name}:{}:{column}", piece.line));
@@ -78,7 +79,7 @@ pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String
     })
 }
 
-/// Says how many similar faults this fault stands for.
+/// Describes the similar errors that this one represents.
 fn similar_faults(fault: &Fault, part: &Lines<'_>) -> Option<String> {
     let (count, places) = &fault.similar_faults;
     let here = places.iter().flatten().filter(|place| part.has(place.start));
@@ -95,7 +96,7 @@ fn line(at: usize, newlines: &[usize]) -> usize {
     1 + newlines.partition_point(|newline| *newline < at)
 }
 
-/// Returns the range of the lines in which a place lies, without the last line end.
+/// Returns the range of the lines of a place, without the last line end.
 fn lines(text: &str, place: Range<usize>, newlines: &[usize]) -> Range<usize> {
     let start = newlines.partition_point(|newline| *newline < place.start);
     let start = start.checked_sub(1).map_or(0, |line| newlines[line] + 1);
@@ -105,15 +106,15 @@ fn lines(text: &str, place: Range<usize>, newlines: &[usize]) -> Range<usize> {
     start..end
 }
 
-/// The line of a marked place, shortened around it where it is long, with what is not seen as escapes.
+/// The line of a marked place, shortened around it if it is long, with invisible characters as escapes.
 struct Piece {
     text: String,
     /// The marked range within the shortened text, in bytes.
     mark: Range<usize>,
-    /// The line of the scene at which the place begins, from 1, and the column there, in characters, from 1.
+    /// The line of the scene where the place begins, and the column there, in characters, both from 1.
     line: usize,
     column: usize,
-    /// The column at which the place begins in the shortened text.
+    /// The column in the shortened text where the place begins.
     shown: usize,
 }
 
@@ -143,7 +144,7 @@ impl Piece {
         }
     }
 
-    /// Returns the piece of the text of this name with its mark.
+    /// Returns the element for this piece and its mark, in the text with this name.
     fn element<'p>(&'p self, kind: AnnotationKind, label: &'p str, name: &'p str) -> Element<'p> {
         let mark = kind.span(self.mark.clone());
         let mark = if label.is_empty() { mark } else { mark.label(label) };
@@ -151,7 +152,7 @@ impl Piece {
     }
 }
 
-/// Returns the further places of a fault: those that help to understand it, and the first few of similar faults.
+/// Returns the further places of an error: those that help to understand it, and the first few of similar errors.
 pub fn others(fault: &Fault) -> impl Iterator<Item = (&Place, &str)> {
     let also = fault.also.iter().map(|(place, label)| (place, label.as_str()));
     also.chain(fault.similar_faults.1.iter().map(|place| (place, "and here")))

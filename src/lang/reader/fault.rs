@@ -1,4 +1,4 @@
-//! Faults: what is wrong with a scene, where, and what would be right.
+//! Faults: the errors and warnings of a scene, with their places and corrections.
 
 use std::ops::Range;
 use tabray_core::text;
@@ -6,11 +6,11 @@ use tabray_core::text;
 /// The maximum number of places of similar faults that one fault lists.
 const PLACES: usize = 3;
 
-/// A range of a scene's text, in bytes. The texts of included files and of options that set values follow the scene's
-/// own text. `None` for an entity that was built without a text.
+/// A range of a scene's text, in bytes, or `None` for an entity built without a text. The texts of included files and
+/// of options that set values follow the scene's own text.
 pub type Place = Option<Range<usize>>;
 
-/// The places of a scene's entities, from the type of each to its end, by their order.
+/// The places of a scene's entities, each from its type to its end, by their orders.
 #[derive(Clone, Debug, Default)]
 pub struct Places(Vec<[u32; 2]>);
 
@@ -26,14 +26,14 @@ impl Places {
         self.0.is_empty()
     }
 
-    /// Returns the place of the entity of this [order](tabray_core::scene::Record::order).
+    /// Returns the place of the entity with this [order](tabray_core::scene::Record::order).
     pub fn get(&self, order: usize) -> Place {
         let [start, end] = self.0.get(order).filter(|place| **place != [u32::MAX; 2])?;
         Some(*start as usize..*end as usize)
     }
 }
 
-/// How bad a fault is.
+/// The severity of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The scene cannot be rendered.
@@ -42,30 +42,30 @@ pub enum Severity {
     Warning,
 }
 
-/// One thing that is wrong with a scene.
+/// An error or a warning about a scene.
 #[derive(Clone, Debug)]
 pub struct Fault {
-    /// How bad the fault is.
+    /// The severity.
     pub severity: Severity,
-    /// What is wrong: lower case, no full stop, names in backticks.
+    /// The message: lower case, no full stop, names in backticks.
     pub message: String,
     /// The range of the text to mark.
     pub place: Place,
-    /// A note to print beside the mark; may be empty.
+    /// A note beside the mark, which may be empty.
     pub label: String,
     /// Further places that help to understand the fault, with a few words each.
     pub also: Vec<(Place, String)>,
-    /// What would be right.
+    /// The correction.
     pub help: Option<String>,
-    /// The word that was probably meant instead of the marked one, without quotes.
+    /// The likely correction of the marked word, without quotes.
     pub meant: Option<String>,
     /// The number of other faults that differ only in their places and are not listed separately, and the first of
-    /// those places.
+    /// these places.
     pub similar_faults: (usize, Vec<Place>),
 }
 
 impl Fault {
-    /// Makes an error: the scene cannot be rendered.
+    /// Makes an error, which prevents rendering.
     pub fn error(place: Place, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -79,7 +79,7 @@ impl Fault {
         }
     }
 
-    /// Makes a warning: the scene can be rendered all the same.
+    /// Makes a warning, which does not prevent rendering.
     pub fn warning(place: Place, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(place, message) }
     }
@@ -96,13 +96,13 @@ impl Fault {
         self
     }
 
-    /// Adds what would be right.
+    /// Adds the correction.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Adds the word that was probably meant instead of the marked one.
+    /// Adds the likely correction of the marked word.
     pub fn meant(mut self, word: Option<&str>) -> Self {
         self.meant = word.map(str::to_owned);
         self
@@ -112,7 +112,7 @@ impl Fault {
         self.place.as_ref().map_or(0, |place| place.start)
     }
 
-    /// Returns the number of similar faults, in brackets, or an empty string where there are none.
+    /// Returns the number of similar faults, in brackets, or an empty string if there are none.
     pub(super) fn more(&self) -> String {
         let (count, _) = self.similar_faults;
         if count == 0 { String::new() } else { format!(" (and in {})", text::count(count, "more place")) }
@@ -131,8 +131,8 @@ impl Fault {
         self.severity == other.severity && self.message == other.message
     }
 
-    /// Shortens texts that are too long to be read, and writes what is not seen as escapes: a name with a line end could
-    /// look like a message of its own. Afterwards the fault's places lie within `text`, and none begins after it ends.
+    /// Shortens long texts, and escapes invisible characters, because a name with a line end could look like a message
+    /// of its own. Also limits the fault's places to `text`, with none beginning after its end.
     pub(super) fn tidy(&mut self, text: &str) {
         let tidy = |words: &str| text::visible(&text::abridged(words)).into_owned();
         let also = self.also.iter_mut().map(|(place, label)| (place, label));

@@ -1,6 +1,6 @@
-//! Syntax that other programs read and scenes do not have: brackets, commas, `=`, `;`, curly quotes, comments after
-//! `//`, colours as `#8080ff`. Where a scene has errors, each of these is reported once, with what would be right, and
-//! the scene is read again without them, so that none of the errors that follow from them is reported.
+//! Syntax of other programs that scenes do not have: brackets, commas, `=`, `;`, curly quotes, comments after `//`,
+//! colours such as `#8080ff`. In a scene with errors, each kind is reported once, with its correction. The scene is
+//! then read again without this syntax, which avoids errors that follow from it.
 
 use super::fault::{Fault, Severity};
 use super::report::Report;
@@ -8,7 +8,7 @@ use super::tokens::{Token, TokenForm, Tokens};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Syntax of other programs, which scenes do not have.
+/// Syntax of other programs that scenes do not have.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum ForeignSyntax {
     Comment,
@@ -19,21 +19,20 @@ enum ForeignSyntax {
     Semicolon,
 }
 
-/// The places of such syntax in a text, and what would replace it at the first one.
+/// The places of such syntax in a text, and the replacement for the first one.
 struct Finding {
     replacement: String,
     places: Vec<Range<usize>>,
 }
 
-/// A text without the syntax that scenes do not have. Each letter that is left stands where it stood.
+/// A text without foreign syntax. The remaining characters keep their places.
 struct Cleaned {
     bytes: Vec<u8>,
     found: BTreeMap<ForeignSyntax, Finding>,
 }
 
-/// Returns the report on a scene with errors. If the text has fewer errors without the syntax of other programs, it is
-/// the report of reading the text `again` without this syntax, together with faults about the syntax. Otherwise it is
-/// the same report.
+/// Returns the report on a scene with errors. If the text has fewer errors without foreign syntax, it is the report of
+/// reading the cleaned text `again`, with errors about the syntax. Otherwise, it is the given report.
 pub fn explained(
     report: Report<'static>,
     text: &str,
@@ -93,13 +92,13 @@ impl ForeignSyntax {
     }
 }
 
-/// Tells whether the first word of a text is followed by the brace that begins an entity, as its name is.
+/// Tells whether the second word of a text begins with the brace of an entity, and the first word is thus its name.
 fn is_followed_by_a_brace(text: &str) -> bool {
     text.split_whitespace().nth(1).is_some_and(|word| word.starts_with('{'))
 }
 
 impl Cleaned {
-    /// Replaces all syntax that scenes do not have. The text is searched only for syntax that its bytes allow.
+    /// Replaces all foreign syntax. The text is searched only for syntax that its bytes allow.
     fn all(&mut self) {
         if self.bytes.contains(&b'/') {
             self.comments();
@@ -125,11 +124,11 @@ impl Cleaned {
     }
 
     fn text(&self) -> String {
-        // Only whole characters are replaced, by others.
+        // Only whole characters are replaced by others.
         String::from_utf8_lossy(&self.bytes).into_owned()
     }
 
-    /// Replaces by white space the comments that begin with `//` or `/*`, where a word could begin.
+    /// Replaces comments that begin with `//` or `/*`, where a word could begin, by white space.
     fn comments(&mut self) {
         let text = self.text();
         let (mut at, mut may_begin) = (0, true);
@@ -162,7 +161,7 @@ impl Cleaned {
         }
     }
 
-    /// Replaces each colour such as `#8080ff` that follows a word on its line by three numbers.
+    /// Replaces each colour such as `#8080ff` after a word on its line by three numbers.
     fn colours(&mut self) {
         let text = self.text();
         let mut start = 0;
@@ -202,7 +201,7 @@ impl Cleaned {
         }
     }
 
-    /// Replaces curly quotes that begin and end words by straight ones.
+    /// Replaces curly quotes around words by straight ones.
     fn quotes(&mut self) {
         let text = self.text();
         let mut start = 0;
@@ -227,7 +226,7 @@ impl Cleaned {
             if line[first..close].contains('"') {
                 continue;
             }
-            // Each straight quote stands beside its word, in the last or the first byte of the curly one.
+            // Each straight quote is next to its word, in the last or the first byte of the curly one.
             self.bytes[start + open..start + first].fill(b' ');
             self.bytes[start + close..start + end].fill(b' ');
             self.bytes[start + first - 1] = b'"';
@@ -288,7 +287,7 @@ impl Cleaned {
             }
             return self.end_of_run(text, run);
         };
-        // What stands before an opening bracket is an attribute: `ambient(1,1,1)`.
+        // The word before an opening bracket is an attribute: `ambient(1,1,1)`.
         let opens = word.find(['<', '(', '[']).map(|at| token.start + at);
         let start = opens.map_or(token.start, |opens| opens.min(values.start));
         let place = start..token.start + word.len();
@@ -310,12 +309,12 @@ impl Cleaned {
     }
 }
 
-/// Tells whether this character is never part of a value: other programs put it around and between values.
+/// Tells whether a character is never part of a value, and other programs put it around and between values.
 fn is_mark(c: char) -> bool {
     matches!(c, '<' | '>' | '(' | ')' | '[' | ']' | ',' | ';' | '=')
 }
 
-/// Returns the positions of a word's marks, where they are not part of a name.
+/// Returns the positions of a word's marks, unless they are part of a name.
 fn marks(word: &str, is_within: bool) -> Option<Vec<usize>> {
     if !word.contains(is_mark) {
         return None;
@@ -326,7 +325,7 @@ fn marks(word: &str, is_within: bool) -> Option<Vec<usize>> {
     };
     let is_number = |piece: &str| piece.parse::<f64>().is_ok();
     let pieces: Vec<_> = word.split(is_mark).filter(|piece| !piece.is_empty()).collect();
-    // What has no brackets may be two numbers, or one with a decimal comma.
+    // Without brackets, the word may be two numbers, or one with a decimal comma.
     let is_decimal = !is_within
         && matches!(word.split_once(','), Some((one, other))
         if [one, other].iter().all(|digits| digits.trim_start_matches(['+', '-']).bytes().all(|b| b.is_ascii_digit())
@@ -346,7 +345,7 @@ fn marks(word: &str, is_within: bool) -> Option<Vec<usize>> {
     }
 }
 
-/// Returns the levels of a colour of three or six hexadecimal digits.
+/// Returns the channels of a colour with three or six hexadecimal digits.
 fn colour(digits: &str) -> Option<[u8; 3]> {
     if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
         return None;

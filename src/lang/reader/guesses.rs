@@ -1,5 +1,5 @@
-//! Finds attributes by their names, tells attributes from values, and guesses which attribute a misspelt word was meant
-//! to be.
+//! Finds attributes by their names, distinguishes attributes from values, and guesses the attribute that a misspelt
+//! word meant.
 
 use crate::registry::Registry;
 use std::collections::HashMap;
@@ -12,12 +12,12 @@ use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::Type;
 use tabray_core::text::{self, nearest};
 
-/// Finds the attribute of this name or alias.
+/// Finds the attribute with this name or alias.
 pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {
     entity.attributes().find(|attribute| attribute.name() == name || attribute.aliases().contains(&name))
 }
 
-/// The attributes of an entity type, so that they are found quickly.
+/// The attributes of an entity type, for fast lookup.
 pub struct Table {
     pub entity: &'static Entity,
     attributes: Vec<KnownAttribute>,
@@ -28,7 +28,7 @@ pub struct Table {
 pub struct KnownAttribute {
     pub attribute: &'static dyn Attribute,
     pub value_type: Type,
-    /// The largest number of values that it takes.
+    /// The maximum number of values.
     pub max: usize,
     pub is_required: bool,
     name: &'static str,
@@ -47,24 +47,24 @@ impl Table {
         Self { entity, attributes: entity.attributes().map(known).collect(), groups }
     }
 
-    /// Returns the groups of attributes from which a scene must give exactly one.
+    /// Returns the groups of attributes. A scene must give exactly one of each.
     pub fn groups(&self) -> &[&'static OneOf] {
         &self.groups
     }
 
-    /// Finds the index of the attribute of this name or alias, which is likely to be the one of index `next`.
+    /// Finds the index of the attribute with this name or alias, which is likely to be `next`.
     pub fn find_next(&self, name: &str, next: usize) -> Option<usize> {
         let is_next = self.attributes.get(next).is_some_and(|known| known.name == name);
         if is_next { Some(next) } else { self.find(name) }
     }
 
-    /// Finds the index of the attribute of this name or alias.
+    /// Finds the index of the attribute with this name or alias.
     pub fn find(&self, name: &str) -> Option<usize> {
         let known = self.attributes.iter().position(|known| known.name == name);
         known.or_else(|| self.attributes.iter().position(|known| known.attribute.aliases().contains(&name)))
     }
 
-    /// Returns the index of the attribute that a misspelt word was probably meant to be.
+    /// Returns the index of the attribute that a misspelt word probably meant.
     pub fn near(&self, word: &str, guesses: &mut Guesses) -> Option<usize> {
         near_attribute(self.entity, word, guesses).and_then(|near| self.find(near.name()))
     }
@@ -79,17 +79,17 @@ impl Deref for Table {
     }
 }
 
-/// The tables of the entity types that have been met.
+/// The tables of the entity types used so far.
 #[derive(Default)]
 pub struct Tables {
     all: Vec<Table>,
-    /// The index of the table that was found last by a name.
+    /// The index of the last table found by a name.
     last: usize,
 }
 
 impl Tables {
-    /// Returns the index of the table of the entity type with this name or alias. Most entities have the type of the
-    /// entity before.
+    /// Returns the index of the table of the entity type with this name or alias. Most entities have the same type as
+    /// the one before.
     pub fn named(&mut self, registry: &Registry, name: &str) -> Option<usize> {
         if self.all.get(self.last).is_none_or(|table| table.entity.name != name) {
             self.last = self.of(registry.find(name)?);
@@ -115,14 +115,13 @@ impl Index<usize> for Tables {
     }
 }
 
-/// The guesses made so far, by entity type and misspelt word, so that no word is looked up twice.
+/// The guesses so far, by entity type and misspelt word, to avoid repeated lookups.
 pub type Guesses = HashMap<(&'static str, String), Option<&'static str>>;
 
-/// The maximum number of different words of a scene for which a guess is made. A scene with more has other faults than
-/// misspellings.
+/// The maximum number of different words of a scene with guesses. A scene with more has other errors than misspellings.
 const MAX_GUESSES: usize = 10_000;
 
-/// Returns the attribute that a misspelt word was probably meant to be.
+/// Returns the attribute that a misspelt word probably meant.
 pub fn near_attribute(
     entity: &'static Entity,
     word: &str,
@@ -143,8 +142,8 @@ pub fn near_attribute(
     near.and_then(|name| find_attribute(entity, name))
 }
 
-/// Tells whether a word is a value rather than the next attribute. A number of values stand before it `already`, and in
-/// a text that is being written the word may be on a line below them.
+/// Tells whether a word is a value rather than the next attribute. `already` is the number of values before it. In a
+/// draft, the word may be on a line below them.
 pub fn is_value(
     table: Option<&Table>,
     attribute: Option<&KnownAttribute>,
@@ -154,14 +153,14 @@ pub fn is_value(
 ) -> bool {
     let max = attribute.map_or(1, |attribute| attribute.max);
     match attribute.map(|attribute| attribute.value_type) {
-        // Of several formulas, the later ones may be left out.
+        // Of several formulas, the later ones may be omitted.
         Some(Type::Formula(_)) if already > 0 && !looks_like_number(word) => {
             let is_attribute =
                 table.is_some_and(|table| table.find(word).is_some() || table.near(word, guesses).is_some());
             already < max && !is_attribute
         }
-        // A name may look like anything, even like a number or an attribute: `material material`.
-        // The names of a list end where the next attribute begins, however many there are.
+        // A name may look like anything, even like a number or an attribute: `material material`. The names of a list,
+        // of any length, end at the next attribute.
         Some(Type::Name(_)) if max > 1 => table.is_none_or(|table| table.find(word).is_none()),
         Some(Type::Word | Type::File | Type::Name(_) | Type::Choice(_) | Type::Formula(_) | Type::Truth) => {
             let is_attribute = || table.is_some_and(|table| table.find(word).is_some());
@@ -175,7 +174,7 @@ pub fn is_value(
     }
 }
 
-/// Tells whether a word begins as a number does.
+/// Tells whether a word begins like a number.
 #[inline]
 pub fn looks_like_number(word: &str) -> bool {
     let bytes = word.as_bytes();

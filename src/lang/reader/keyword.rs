@@ -1,6 +1,6 @@
-//! The words that begin something else than an entity.
+//! Keywords: words that begin a statement other than an entity.
 
-/// A word that begins something else than an entity.
+/// A word that begins a statement other than an entity.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Keyword {
     /// Names a number.
@@ -12,7 +12,7 @@ pub enum Keyword {
 }
 
 impl Keyword {
-    /// Returns the keyword that a word is.
+    /// Returns the keyword for a word.
     #[inline]
     pub fn of(word: &str) -> Option<Self> {
         match word {
@@ -23,7 +23,7 @@ impl Keyword {
         }
     }
 
-    /// Shows how a scene in the notes' syntax writes it.
+    /// Returns the notation of the statement in the notes' syntax.
     pub fn usage(self) -> &'static str {
         match self {
             Self::Let => "write `let NAME VALUE`, where the value is a number or a formula in quotes",
@@ -32,7 +32,7 @@ impl Keyword {
         }
     }
 
-    /// Shows how a scene in TOML writes it.
+    /// Returns the notation of the statement in TOML.
     pub fn usage_in_toml(self) -> &'static str {
         match self {
             Self::Let => {

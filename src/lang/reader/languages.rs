@@ -10,8 +10,7 @@ use crate::syntax::Syntax;
 use std::collections::HashSet;
 use std::ops::Range;
 
-/// Words with which a statement of POV-Ray's language begins, and which scenes have no use for. Those with a `#` begin
-/// a line.
+/// Words that begin a statement of POV-Ray's language, and do not occur in scenes. Those with a `#` begin a line.
 const POV: [&str; 12] = [
     "#declare",
     "#include",
@@ -27,10 +26,10 @@ const POV: [&str; 12] = [
     "rgbt",
 ];
 
-/// The number of different signs that tell POV-Ray's language for certain: some words may be those of a scene.
+/// The number of different signs that prove POV-Ray's language, because scenes may have some of these words.
 const ENOUGH: usize = 2;
 
-/// The signs of other languages, in which a text begins.
+/// Other languages, with the beginnings of their texts.
 const OTHERS: [Language; 4] = [
     Language { name: "a Mitsuba scene", begins: &["<?xml", "<scene", "<!--"], has: &["<scene"] },
     Language { name: "an XML file, not a scene", begins: &["<?xml", "<"], has: &["</"] },
@@ -49,9 +48,9 @@ const OTHERS: [Language; 4] = [
 /// Another language.
 struct Language {
     name: &'static str,
-    /// What its texts may begin with; empty where they may begin with anything.
+    /// The possible beginnings of a text, or none if a text may begin with anything.
     begins: &'static [&'static str],
-    /// Signs of which a text has at least one, and two where it may begin with anything.
+    /// Signs of a text. It has at least one of them, and two if it may begin with anything.
     has: &'static [&'static str],
 }
 
@@ -87,7 +86,7 @@ pub fn recognised(
     let fault = match syntax {
         Syntax::Toml => of_notes(registry, name, text).or_else(|| of_others(text)),
         Syntax::Notes => {
-            // A scene that is made around a mesh has the mesh's name.
+            // A scene made around a mesh has the mesh's name.
             let mesh = || of_meshes(name, text).filter(|_| has_entities(registry, text).is_none());
             of_surfaces(name, text)
                 .or_else(mesh)
@@ -108,9 +107,9 @@ fn of_others(text: &str) -> Option<Fault> {
 
 /// Recognises a text in the notes' syntax.
 fn of_notes(registry: &Registry, name: &str, text: &str) -> Option<Fault> {
-    // What is well-formed TOML may look like an entity, as an inline table does.
+    // Well-formed TOML may look like an entity, for example an inline table.
     let is_toml = || text.parse::<toml::Table>().is_ok();
-    // Most texts in TOML have no braces, and entities of the notes' syntax do.
+    // Most texts in TOML have no braces, but entities of the notes' syntax do.
     if Syntax::of_name(name) != Some(Syntax::Toml) || !text.contains('{') || is_toml() {
         return None;
     }
@@ -124,7 +123,7 @@ fn of_notes(registry: &Registry, name: &str, text: &str) -> Option<Fault> {
 
 /// Recognises a scene of POV-Ray.
 fn of_pov(text: &str, name: &str) -> Option<Fault> {
-    // Entities of scenes have names, and values no brackets.
+    // In scenes, entities have names, and values have no brackets.
     if !(text.contains('<') && text.contains('>')) {
         return None;
     }
@@ -141,7 +140,7 @@ fn of_pov(text: &str, name: &str) -> Option<Fault> {
                 first.get_or_insert(start..start + line.trim().len());
             }
         }
-        // A shape without a name begins with its place: `sphere { <0, 1, 2>, 2`.
+        // A shape without a name begins with its position: `sphere { <0, 1, 2>, 2`.
         if code.split('{').skip(1).any(|rest| rest.trim_start().starts_with('<')) {
             found.insert("{ <");
         }
@@ -159,11 +158,10 @@ fn of_surfaces(name: &str, text: &str) -> Option<Fault> {
     Some(fault.help("`tabray convert` writes it as one: give it this file, and a name that ends in .ray"))
 }
 
-/// The endings of the names of files of meshes.
+/// The extensions of mesh files.
 const MESHES: [&str; 5] = [".glb", ".gltf", ".obj", ".ply", ".stl"];
 
-/// Returns the report on a file that is not text: the given one, or a report that the file is a mesh according to its
-/// name.
+/// Returns the report on a file that is not text: the given one, or a report that the file is a mesh, by its name.
 pub fn of_bytes(report: Report<'static>, name: &str) -> Report<'static> {
     let Some(fault) = of_meshes(name, "") else { return report };
     let mut report = Report::new(name, String::new(), Syntax::default());
@@ -171,7 +169,7 @@ pub fn of_bytes(report: Report<'static>, name: &str) -> Report<'static> {
     report
 }
 
-/// Recognises by its name a mesh, which is no scene by its text.
+/// Recognises a mesh by its name.
 fn of_meshes(name: &str, text: &str) -> Option<Fault> {
     let ending = &name[name.rfind('.')?..];
     let is_one = MESHES.iter().any(|known| ending.eq_ignore_ascii_case(known));
@@ -182,7 +180,7 @@ fn of_meshes(name: &str, text: &str) -> Option<Fault> {
     })
 }
 
-/// Recognises a scene of numbers, which stand for what other scenes say in words.
+/// Recognises a scene that consists of numbers in place of words.
 fn of_numbers(registry: &Registry, text: &str) -> Option<Fault> {
     let nowhere = &mut Report::default();
     let mut tokens = Tokens::of(text, nowhere);

@@ -1,15 +1,14 @@
-//! Recognises colours that are meant to be from 0 to 255.
+//! Recognises colours that are meant as 0 to 255.
 
 use super::fault::Fault;
 use tabray_core::scene::entity::Args;
 use tabray_core::scene::value::Datum;
 use tabray_core::text::short;
 
-/// The least value of the brightest channel of such a colour. Scenes have colours of up to some tens, where objects are
-/// far away.
+/// The minimum of the brightest channel of such a colour. Scenes with distant objects have colours of up to some tens.
 const LEAST: f64 = 100.0;
 
-/// Returns a warning if a material's colour has the numbers of levels from 0 to 255, and the attribute that has them.
+/// Returns a warning if a material's colour has integer channels from 0 to 255, with the attribute of that colour.
 pub fn warning(material: &Args) -> Option<(&'static str, Fault)> {
     let is_level = |number: &f64| number.fract() == 0.0 && (0.0..=255.0).contains(number);
     material.values().find_map(|(attribute, datum)| match datum {

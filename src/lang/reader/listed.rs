@@ -1,5 +1,5 @@
-//! The content of a scene in TOML, in the order of its text: entities, and numbers, files and rounds that lead to more
-//! entities.
+//! The content of a scene in TOML, in the order of its text: entities, and the numbers, files and rounds that lead to
+//! more entities.
 
 use super::fault::Severity;
 use super::guesses::Tables;
@@ -15,16 +15,17 @@ use std::mem::take;
 use std::ops::Range;
 use tabray_core::parallel;
 
-/// How much more memory an entity takes than one in the notes' syntax: all of them are in memory before any is checked.
+/// The memory of an entity as a multiple of one in the notes' syntax, because all are in memory before the first is
+/// checked.
 const WEIGHT: usize = 8;
 
-/// The number of parts that are parsed at one time.
+/// The number of parts that are parsed together.
 const TOGETHER: usize = 16;
 
 /// Parses a part of a text.
 pub type Parse<'p, 'a, 't> = &'p (dyn Fn(Range<usize>, &mut Report<'t>) -> Vec<Statement<'a>> + Sync);
 
-/// Finds the entities that follow from what a scene says.
+/// Finds the entities that result from the statements of a scene.
 pub struct Lister<'a, 'r, 't> {
     registry: &'r Registry,
     sources: &'a Sources<'a>,
@@ -35,7 +36,7 @@ pub struct Lister<'a, 'r, 't> {
     entities: Vec<Parsed<'a>>,
 }
 
-/// Returns the entities of a scene, in their order.
+/// Returns the entities of a scene, in order.
 pub fn entities<'a, 't>(
     registry: &Registry,
     sources: &'a Sources<'_>,
@@ -53,12 +54,12 @@ pub fn entities<'a, 't>(
     lister.entities
 }
 
-/// The entities of a long scene, some thousand at a time: while some are checked, the next ones are parsed, so that only
+/// The entities of a long scene, some thousand at a time. While some are checked, the next ones are parsed, and only
 /// these are in memory.
 pub struct Stream<'a, 'r, 't> {
     lister: Lister<'a, 'r, 't>,
     parts: IndependentParts,
-    /// The number of parts that were parsed.
+    /// The number of parsed parts.
     parsed: usize,
 }
 
@@ -77,7 +78,7 @@ impl<'a, 'r, 't> Stream<'a, 'r, 't> {
         Self { lister, parts, parsed: 0 }
     }
 
-    /// Returns the next entities; none after the last ones.
+    /// Returns the next entities, or none after the last ones.
     pub fn next(&mut self) -> Vec<Parsed<'a>> {
         let Self { lister, parts: IndependentParts { ranges, .. }, parsed } = self;
         while lister.entities.is_empty() && *parsed < ranges.len() {
@@ -98,7 +99,7 @@ impl<'a> Lister<'a, '_, '_> {
     fn statements(&mut self, statements: Vec<Statement<'a>>) {
         for statement in statements {
             match statement {
-                // Most entities are where they will stay.
+                // Most entities are already in their final place.
                 Statement::Entity(entity) => self.entity(entity),
                 statement => self.statement(&statement),
             }

@@ -6,20 +6,20 @@ use super::report::Report;
 use std::iter;
 use std::ops::Range;
 
-/// A place in one of the texts that a scene is read from.
+/// A place in one of the texts of a scene.
 pub struct Located<'r> {
-    /// The name of the file as messages show it, or that of the option.
+    /// The name of the file in messages, or that of the option.
     pub name: &'r str,
     /// The text of the file, up to its end.
     pub text: &'r str,
     /// The range of that text, in bytes.
     pub place: Range<usize>,
-    /// What is so at the place; may be empty.
+    /// A note about the place, which may be empty.
     pub label: &'r str,
 }
 
 impl Report<'_> {
-    /// Returns each fault with its place, and then the further places that help to understand it. A fault that has no
+    /// Returns each fault with its place, and then the further places that help to understand it. A fault without a
     /// place is at the beginning of the scene.
     pub(crate) fn located(&self) -> impl Iterator<Item = (&Fault, Vec<Located<'_>>)> {
         let parts = self.parts();

@@ -1,4 +1,4 @@
-//! Reports for other programs: one line per fault, as editors read them, or one JSON object per fault.
+//! Reports for other programs: one line per fault in the format of editors, or one JSON object per fault.
 
 use super::excerpt::{self, rendered};
 use super::fault::{Fault, Severity};
@@ -39,7 +39,7 @@ impl Report<'_> {
         self.faults.iter().map(line).chain(rest).collect()
     }
 
-    /// Writes one JSON object per fault, a `Message`, each on a line of its own.
+    /// Writes one JSON object per fault, a `Message`, each on its own line.
     pub fn json(&self) -> String {
         let parts = self.parts();
         let line = |fault: &Fault| {
@@ -65,26 +65,26 @@ impl Report<'_> {
 /// A message for other programs: a JSON object, with fields named after those of rustc.
 #[derive(Serialize)]
 pub struct Message<'m> {
-    /// What would be right, or null.
+    /// The correction, or null.
     pub help: Option<&'m str>,
     /// `error`, `warning` or `note`.
     pub level: &'m str,
-    /// What is wrong, or what was done.
+    /// The error, or the action.
     pub message: &'m str,
-    /// The message as people read it, without colours.
+    /// The message for people, without colours.
     pub rendered: &'m str,
-    /// The places in the scene; empty where the message is not about a scene.
+    /// The places in the scene, or none if the message is not about a scene.
     pub spans: Vec<Span<'m>>,
 }
 
 impl Message<'_> {
-    /// Returns the message as JSON, on a line of its own.
+    /// Returns the message as JSON, on its own line.
     pub fn line(&self) -> String {
         text::json(self) + "\n"
     }
 }
 
-/// A place in a scene. Bytes count from 0, after a byte order mark; lines and columns count from 1, columns in
+/// A place in a scene. Bytes count from 0, after a byte order mark. Lines and columns count from 1, columns in
 /// characters.
 #[derive(Serialize)]
 pub struct Span<'m> {
@@ -96,11 +96,11 @@ pub struct Span<'m> {
     pub column_end: usize,
     /// The first column of the place.
     pub column_start: usize,
-    /// The scene as the command line names it, `<stdin>` for standard input; an included file; or `--set`.
+    /// The scene as named on the command line, `<stdin>` for standard input, an included file, or `--set`.
     pub file_name: &'m str,
-    /// Whether the message is about this place; other places help to understand it.
+    /// Whether the message is about this place. Other places help to understand it.
     pub is_primary: bool,
-    /// A few words about the place, or null.
+    /// A note about the place, or null.
     pub label: Option<&'m str>,
     /// The last line of the place.
     pub line_end: usize,

@@ -1,4 +1,4 @@
-//! Names that are missing from a scene.
+//! Missing names of a scene.
 
 use super::fault::Place;
 use super::parsed::Word;
@@ -9,12 +9,12 @@ use std::hash::Hash;
 /// The maximum number of different missing names of one sort that are kept. Further names are only counted.
 const MAX_MISSING: usize = 10_000;
 
-/// Names for which a scene has no entity or no type. Their number is limited, so that a scene that consists of such
-/// names takes little memory.
+/// Names without an entity or type. Their number is limited, so that a scene that consists of such names takes little
+/// memory.
 pub struct Missing<K> {
     /// The first names, each with its first place and the number of its places.
     pub names: BTreeMap<(K, String), (Place, usize)>,
-    /// The hashes of the others.
+    /// The hashes of further names.
     others: HashSet<(K, u64)>,
 }
 
@@ -25,7 +25,7 @@ impl<K> Default for Missing<K> {
 }
 
 impl<K: Copy + Ord + Hash> Missing<K> {
-    /// Notes that a name of this sort is missing at a place.
+    /// Adds a missing name of this sort at a place.
     pub fn add(&mut self, sort: K, Word { text, place, .. }: &Word<'_>, hash: u64) {
         let is_full = self.names.len() >= MAX_MISSING;
         match self.names.entry((sort, text.to_string())) {
@@ -39,7 +39,7 @@ impl<K: Copy + Ord + Hash> Missing<K> {
         }
     }
 
-    /// Returns the hashes of the names that are not kept, all different.
+    /// Returns the different hashes of the names that are not kept.
     pub fn others(&self) -> impl Iterator<Item = u64> {
         self.others.iter().map(|(_, hash)| *hash)
     }

@@ -1,4 +1,4 @@
-//! From a scene's text to a [`Model`], or to a report of all its faults.
+//! Reads a scene's text as a [`Model`], or reports all its faults.
 
 mod alike;
 mod astray;
@@ -75,18 +75,18 @@ pub type Report = report::Report<'static>;
 pub struct Loaded {
     /// The scene, ready to be traced.
     pub model: Model,
-    /// The warnings: places that may not mean what was intended.
+    /// The warnings: places with a possibly unintended meaning.
     pub warnings: Report,
-    /// The time taken to check the entities and to construct the model, textures included, but without parsing the
-    /// text; zero without a [clock](ReadOptions::clock).
+    /// The time for checking the entities and constructing the model, including textures but not parsing. It is zero
+    /// without a [clock](ReadOptions::clock).
     pub building: Duration,
     /// The place of each entity.
     pub places: Places,
 }
 
-/// Reads a scene: in TOML if its name ends in `.toml` or its text begins as TOML does, as one of the course's older scenes
-/// if its lines are those of such a scene, and otherwise in the notes' syntax. `name` is what messages call the scene, and the file names in it are relative to `folder`. An accuracy given here
-/// overrides the scene's own.
+/// Reads a scene. The syntax is TOML if the scene's name ends in `.toml` or its text begins like TOML, that of the
+/// course's older scenes if its lines look like them, and otherwise that of the notes. `name` is the scene's name in
+/// messages, and file names in the scene are relative to `folder`. An accuracy given here overrides the scene's own.
 ///
 /// # Errors
 /// Returns all faults of the scene, including warnings, in the order of the text.
@@ -100,7 +100,7 @@ pub fn read(
     read_by(registry, name, folder, bytes, ReadOptions { above_all: accuracy, ..ReadOptions::default() })
 }
 
-/// Reads a scene as [`read`] does, but with the choices of [`ReadOptions`].
+/// Reads a scene like [`read`], but with the choices of [`ReadOptions`].
 ///
 /// # Errors
 /// Returns all faults of the scene, including warnings, in the order of the text.
@@ -131,7 +131,7 @@ pub fn read_by(
     })
 }
 
-/// Reads a scene as [`read_by`] does, for questions about rays only. A scene without a camera is given one.
+/// Reads a scene like [`read_by`], but only for queries of rays. Adds a camera to a scene without one.
 ///
 /// # Errors
 /// Returns all faults of the scene, including warnings, in the order of the text.
@@ -150,7 +150,7 @@ pub fn read_for_rays(
     })
 }
 
-/// Tells whether nothing in a scene can be seen, as the warnings of reading the scene say.
+/// Tells whether nothing in a scene is visible, like the warning of the reader.
 pub fn is_black(model: &Model) -> bool {
     unseen::warning(model).is_some()
 }
@@ -189,7 +189,7 @@ fn read_text(
         let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
             toml::parse(registry, &sources.text[..part.end], part.start, report)
         };
-        // A long and sound text is parsed and checked at one go.
+        // A long and valid text is parsed and checked in one pass.
         if let Some(parts) = toml::independent_parts(&sources.text[..sources.own.end]) {
             let mut errors = report.clone();
             let mut stream = Stream::new(registry, &sources, &parse, &mut errors, parts);
@@ -201,7 +201,7 @@ fn read_text(
         }
         return read_list(registry, folder, &sources, &parse, report, options);
     }
-    // A sound text is parsed and checked at one go.
+    // A valid text is parsed and checked in one pass.
     let mut errors = report.clone();
     let Some(parser) = statements::parser(registry, &sources, &mut errors) else {
         return Err(errors.into_owned());
@@ -235,12 +235,12 @@ fn read_older(
     let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
         older::parse(&sources.text, part, folder, report)
     };
-    // Their lamps are far away, and their colours were chosen accordingly.
+    // Their lamps are far away, and their colours match that.
     let options = ReadOptions { may_be_bright: true, ..options };
     read_list(registry, folder, &sources, &parse, sources.report(name, Syntax::Notes), options)
 }
 
-/// Reads a scene: parses all entities before it checks any.
+/// Reads a scene, parsing all entities before checking any.
 fn read_list<'s>(
     registry: &Registry,
     folder: &Path,
@@ -257,7 +257,7 @@ fn read_list<'s>(
     finish(checked, registry, report, options)
 }
 
-/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names
+/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text. File names
 /// are relative to the working directory.
 ///
 /// ```
@@ -294,7 +294,7 @@ pub fn build(
     finish(checked, registry, report, ReadOptions::default())
 }
 
-/// Returns a scene that was checked, if there is nothing wrong with it.
+/// Returns a checked scene, if it has no errors.
 fn finish(
     (model, places, building): Checked,
     registry: &Registry,

@@ -1,4 +1,4 @@
-//! The names of a scene: which entities have them, and what references to them mean.
+//! The names of a scene: their entities, and the references to them.
 
 use super::fault::{Fault, Place, Severity};
 use super::missing::Missing;
@@ -19,11 +19,11 @@ use tabray_core::scene::value::{Datum, Value};
 use tabray_core::text::{self, nearest};
 use tabray_core::world::body::{NamedBody, ShaderFactory};
 
-/// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
-/// the others.
+/// The scope in which a name must be unique: the entity type for an object, and an empty string, which stands for the
+/// whole kind, for the others.
 pub(super) type Scope = &'static str;
 
-/// The claims of further entities to a name that one has already.
+/// Further claims to a name that is already in use.
 #[derive(Default)]
 pub(super) struct RepeatedClaims {
     /// The other scopes in which the name was claimed.
@@ -38,7 +38,7 @@ struct First {
     order: u32,
 }
 
-/// The names of the part of a scene that has been checked. Their letters are in the [`Store`].
+/// The names in the checked part of a scene. Their letters are in the [`Store`].
 #[derive(Default)]
 pub struct Names {
     hasher: DefaultHashBuilder,
@@ -46,14 +46,14 @@ pub struct Names {
     firsts: HashTable<First>,
     /// The entities that claimed a name again, by the order of the first one.
     pub(super) again: BTreeMap<usize, RepeatedClaims>,
-    /// The hashes of the names of entities of unknown types, which a reference may mean.
+    /// The hashes of the names of entities with unknown types, which a reference may mean.
     doubtful: HashSet<u64>,
-    /// The materials, textures and shaders that can be referred to so far, and the objects to which an entity has
-    /// referred, by the indices of their data.
+    /// The materials, textures and shaders defined so far, and the objects referred to so far, by the indices of their
+    /// data.
     defined: [HashMap<String, u32>; 4],
-    /// The objects that other entities refer to, by their orders: a datum each.
+    /// The objects that other entities refer to, by their orders, with a datum each.
     patterns: BTreeMap<usize, Datum>,
-    /// References to entities not (yet) defined.
+    /// References to entities that are not defined yet.
     unresolved: Missing<Kind>,
     /// Whether an entity refers to a list of objects.
     pub combines: bool,
@@ -65,14 +65,15 @@ impl Names {
         self.hasher.hash_one(word)
     }
 
-    /// Notes the name of an entity of an unknown type.
+    /// Notes the name of an entity with an unknown type.
     pub fn doubt(&mut self, name: &str) {
         let hash = self.hash_of(name);
         self.doubtful.insert(hash);
     }
 
-    /// Gives an entity its name, of which [`hash`](Self::hash) is the hash, and reports an invalid name. Returns whether the
-    /// entity counts: of several materials, textures or objects of one type with the same name, only the first does.
+    /// Claims a name for an entity, and reports an invalid name. `hash` comes from [`hash`](Self::hash). Returns
+    /// whether the entity counts: of several materials, textures or objects of one type with the same name, only the
+    /// first does.
     pub fn claim(
         &mut self,
         store: &Store,
@@ -116,14 +117,14 @@ impl Names {
         is_first || kind == Kind::Light
     }
 
-    /// Forgets what can no longer be asked for, once all names are claimed.
+    /// Frees unneeded memory after all names are claimed.
     pub fn forget(&mut self) {
         if self.unresolved.is_empty() {
             self.firsts = HashTable::new();
         }
     }
 
-    /// Finds the first entity of a kind and name.
+    /// Finds the first entity with a kind and name.
     fn first(&self, store: &Store, kind: Kind, name: &str) -> Option<usize> {
         let hash = self.hash(kind, name);
         let first = self.firsts.find(spread(hash), |first| is_of(store, first, hash, kind, name));
@@ -135,23 +136,23 @@ impl Names {
         (self.hasher.hash_one((kind, name)) >> 32) as u32
     }
 
-    /// Defines a name, so that later entities can refer to it.
+    /// Defines a name for references from later entities.
     pub fn define(&mut self, kind: Kind, name: &str, index: u32) {
         self.defined[table_of(kind)].insert(name.to_owned(), index);
     }
 
-    /// Returns the index of the datum of an entity that is defined.
+    /// Returns the index of the datum of a defined entity.
     pub fn defined(&self, kind: Kind, name: &str) -> Option<u32> {
         self.defined[table_of(kind)].get(name).copied()
     }
 
-    /// Takes the objects that other entities refer to, by their orders: a datum each.
+    /// Takes the objects that other entities refer to, by their orders, with a datum each.
     pub fn patterns(&mut self) -> BTreeMap<usize, Datum> {
         take(&mut self.patterns)
     }
 
-    /// Returns the entity that a word refers to. If it is not defined, the reference is remembered and a stand-in is
-    /// returned, so that the entity that refers to it can be checked.
+    /// Returns the entity that a word refers to. If it is undefined, notes the reference and returns a placeholder, so
+    /// that the referring entity can be checked.
     pub fn resolve(&mut self, store: &Store, kind: Kind, word: &Word<'_>) -> Datum {
         if let Some(index) = self.defined(kind, &word.text) {
             return store.datum(index).clone();
@@ -172,8 +173,8 @@ impl Names {
         placeholder(kind)
     }
 
-    /// Reports the references to undefined names, one fault for each name. `place` returns the place of the name of the
-    /// entity of an order.
+    /// Reports the references to undefined names, one fault for each name. `place` returns the place of an entity's
+    /// name, given its order.
     pub fn report_unresolved(
         &self,
         registry: &Registry,
@@ -181,7 +182,7 @@ impl Names {
         place: impl Fn(usize) -> Place,
         report: &mut Report<'_>,
     ) {
-        // In the order of the text, so that guesses are made only for references that are listed.
+        // The order of the text restricts guesses to listed references.
         let is_doubtful = |hash| self.doubtful.contains(&hash);
         let unresolved = self.unresolved.names.iter();
         let mut unresolved: Vec<_> =
@@ -199,7 +200,7 @@ impl Names {
                         .also(place(defined), "defined here")
                         .help(format!("{} must be defined before it is used", kind.with_article()))
                 }
-                // A type that needs attributes does not stand for a shader.
+                // A type with required attributes cannot replace a shader.
                 None if *kind == Kind::Shader
                     && let Some(entity) = registry.find(text).filter(|entity| entity.kind() == *kind) =>
                 {
@@ -243,7 +244,7 @@ fn known(store: &Store, kinds: impl Iterator<Item = Kind>) -> BTreeMap<Kind, Vec
     known
 }
 
-/// Returns the name of the entity that contains a place: the last entity whose name comes before the place.
+/// Returns the name of the entity that contains a place: the last entity with a name before the place.
 fn owner<'s>(store: &'s Store, place: impl Fn(usize) -> Place, at: &Place) -> Option<&'s str> {
     let (at, mut orders) = (at.as_ref()?.start, 0..store.count());
     while !orders.is_empty() {
@@ -269,23 +270,23 @@ pub(super) fn scope(entity: &'static Entity) -> Scope {
     if entity.kind() == Kind::Object { entity.name } else { "" }
 }
 
-/// Returns a hash whose upper bits and lower bits all depend on the lower bits of half a hash.
+/// Spreads the bits of half a hash over the upper and the lower bits of a hash.
 fn spread(hash: u32) -> u64 {
     // 2^64 divided by the golden ratio (Knuth's multiplicative hashing).
     u64::from(hash).wrapping_mul(0x9E37_79B9_7F4A_7C15)
 }
 
-/// Tells whether an entity, given by its hash and its order, is of this kind and name.
+/// Tells whether an entity, given by its hash and its order, has this kind and name.
 fn is_of(store: &Store, first: &First, hash: u32, kind: Kind, name: &str) -> bool {
     let order = first.order as usize;
-    // An entity that is being checked has its name, and is not in the store yet.
+    // An entity under check has a name, but is not in the store yet.
     first.hash == hash
         && order < store.count()
         && store.entity(order).is_some_and(|entity| entity.kind() == kind)
         && store.name(order) == name
 }
 
-/// Returns a default entity that stands for a faulty or missing one. All default entities of a kind are the same.
+/// Returns a default entity in place of a faulty or missing one. All default entities of a kind are the same.
 pub fn placeholder(kind: Kind) -> Datum {
     match kind {
         Kind::Object => return Datum::Object { name: Arc::from(""), body: NamedBody::default() },
@@ -301,7 +302,7 @@ pub fn placeholder(kind: Kind) -> Datum {
     PLACEHOLDERS[usize::from(kind == Kind::Texture)].clone()
 }
 
-/// Returns the label of a fault that may stand for several places.
+/// Returns the label of a fault that may have several places.
 pub fn suggestion(near: Option<&str>, places: usize) -> String {
     let more = text::count(places - 1, "more place");
     match (near, places) {

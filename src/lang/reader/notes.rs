@@ -1,5 +1,5 @@
-//! The grammar of the notes' scene language: `entity-type name { attribute values ... }`, one word after another. The reader,
-//! `fmt` and editors know a text by it alone.
+//! The grammar of the notes' scene language: `entity-type name { attribute values ... }`, one word after another. The
+//! reader, `fmt` and editors share it.
 
 use super::alike::Alike;
 use super::fault::Fault;
@@ -14,7 +14,7 @@ use std::ops::Range;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::value::Type;
 
-/// Parses again the entity that begins at a byte of a text. Its faults have already been reported.
+/// Parses an entity at a byte of a text again. Its faults have already been reported.
 pub fn again<'a>(registry: &Registry, text: &'a str, at: usize) -> Option<Parsed<'a>> {
     let mut nowhere = Report::default();
     let mut entity = None;
@@ -22,7 +22,7 @@ pub fn again<'a>(registry: &Registry, text: &'a str, at: usize) -> Option<Parsed
     entity
 }
 
-/// Returns the place of the type of the first whole entity in a text, if it has one.
+/// Returns the place of the type of the first complete entity in a text, if any.
 pub fn has_entities(registry: &Registry, text: &str) -> Option<Range<usize>> {
     let mut nowhere = Report::default();
     let mut grammar = Grammar::new(registry, text, 0, &mut nowhere);
@@ -35,44 +35,44 @@ pub fn has_entities(registry: &Registry, text: &str) -> Option<Range<usize>> {
     None
 }
 
-/// A part of a scene. What is wrong with it is reported.
+/// A part of a scene. Its errors are reported.
 pub enum Node<'a> {
     /// An entity.
     Entity,
     /// A statement other than an entity, such as `let`.
     Statement(Statement<'a>),
-    /// The brace that ends what is repeated.
+    /// The closing brace of a `repeat`.
     Close(Token),
-    /// Words that belong to nothing.
+    /// Words outside of any part.
     Stray,
 }
 
-/// A keyword and what follows it.
+/// A keyword and its words.
 pub struct Statement<'a> {
     pub keyword: Keyword,
     pub first: Token,
     /// The words after the keyword: a file, a name and a value, or a name and a count. A missing word is reported.
     pub words: [Option<Word<'a>>; 2],
-    /// The brace before what is repeated.
+    /// The opening brace of a `repeat`.
     pub open: Option<Token>,
 }
 
-/// The parser of a text in the notes' syntax, which gives one part of it after another.
+/// The parser of a text in the notes' syntax, which returns its parts in order.
 pub struct Grammar<'a, 'r> {
     pub registry: &'r Registry,
     pub tokens: Tokens<'a>,
     pub report: &'r mut Report<'a>,
     pub tables: Tables,
-    /// Whether the text is being written: then a line break ends values before an attribute, and an entity ends the
-    /// unfinished entity before it; and all values are kept.
+    /// Whether the text is a draft. In a draft, a line break ends values before an attribute, an entity ends an
+    /// incomplete entity before it, and all values are kept.
     is_draft: bool,
-    /// The place of the token read last.
+    /// The place of the last token.
     pub before: Range<usize>,
-    /// The entity read last: the place of its first word, and that of its end.
+    /// The last entity: the place of its first word, and that of its end.
     last: Option<(Range<usize>, Range<usize>)>,
-    /// The range between the braces of the entity read last.
+    /// The range between the braces of the last entity.
     pub body: Range<usize>,
-    /// The table of the entity read last.
+    /// The table of the last entity.
     pub table: Option<usize>,
 }
 
@@ -92,7 +92,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         }
     }
 
-    /// Begins with a text that is being written.
+    /// Begins with a draft.
     pub fn of_draft(registry: &'r Registry, text: &'a str, report: &'r mut Report<'a>) -> Self {
         Self { is_draft: true, ..Self::new(registry, text, 0, report) }
     }
@@ -111,12 +111,12 @@ impl<'a, 'r> Grammar<'a, 'r> {
         token
     }
 
-    /// Goes on at another byte of the text.
+    /// Continues at another byte of the text.
     pub fn go_to(&mut self, at: usize) {
         self.tokens = Tokens::from(self.tokens.text, at, self.report);
     }
 
-    /// Returns the keyword that follows, if there is one.
+    /// Returns the next token as a keyword, if it is one.
     #[inline]
     fn keyword(&self) -> Option<Keyword> {
         let token = self.token().filter(|token| token.form == TokenForm::Word)?;
@@ -150,22 +150,22 @@ impl<'a, 'r> Grammar<'a, 'r> {
             && self.token().is_some_and(|token| !looks_like_number(&self.text(token)))
     }
 
-    /// Tells whether an entity begins here, even if its name or its brace is missing.
+    /// Tells whether an entity begins here, even with a missing name or brace.
     fn begins_entity(&self) -> bool {
         self.has_form()
             || (self.is_word(0) && self.is(1, TokenForm::Open))
             || (self.is_entity_type() && self.is_word(1))
     }
 
-    /// Tells whether any part of the text that begins here is an entity.
+    /// Tells whether the text from here on has an entity.
     pub fn looks_like_a_scene(&self) -> bool {
         self.begins_entity()
             || self.keyword().is_some()
             || has_entities(self.registry, self.tokens.text).is_some()
     }
 
-    /// Reads the next part. An entity reuses the memory of another one if there is one. In a text that `is_repeated`, a
-    /// brace ends the text.
+    /// Reads the next part. An entity reuses the memory of another one, if given. If `is_repeated`, a brace ends the
+    /// text.
     pub fn next(&mut self, is_repeated: bool, memory: &mut Option<Parsed<'a>>) -> Option<Node<'a>> {
         if let Some(keyword) = self.keyword() {
             self.statement(keyword).map(Node::Statement)
@@ -178,7 +178,8 @@ impl<'a, 'r> Grammar<'a, 'r> {
         }
     }
 
-    /// Reads entities with the same words as those in whose memory they are put, as far as there are such. Returns their number.
+    /// Reads entities with the same words as those in `memory`, in their place, as far as possible. Returns their
+    /// number.
     pub fn alike(&mut self, memory: &mut [Option<Parsed<'a>>]) -> usize {
         let Some(first) = self.token() else { return 0 };
         let (mut end, mut last, mut count) = (first.start, None, 0);
@@ -197,7 +198,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         count
     }
 
-    /// Reads a keyword and what follows it.
+    /// Reads a keyword and its words.
     fn statement(&mut self, keyword: Keyword) -> Option<Statement<'a>> {
         let first = self.step()?;
         let mut words = [None, None];
@@ -222,7 +223,8 @@ impl<'a, 'r> Grammar<'a, 'r> {
         Some(Statement { keyword, first, words, open })
     }
 
-    /// Consumes the rest of a function's head, `f(u, v)`, that a word begins, and a `=` after it; returns all of the head.
+    /// Consumes the rest of a function's head, `f(u, v)`, that begins with a word, and a `=` after it. Returns the
+    /// whole head.
     fn head(&mut self, first: Token) -> Token {
         let is_word = |token: &Token| token.form == TokenForm::Word;
         let is_closed = |grammar: &Self, token: Token| grammar.tokens.raw(token).ends_with(')');
@@ -242,7 +244,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         Token { end: last.end, ..first }
     }
 
-    /// Skips words that belong to no entity.
+    /// Skips words outside of entities.
     fn stray(&mut self, is_repeated: bool) -> Option<()> {
         let first = self.step()?;
         let (mut last, mut count) = (first, 1);
@@ -270,12 +272,12 @@ impl<'a, 'r> Grammar<'a, 'r> {
         Some(())
     }
 
-    /// Parses an entity, in the memory of another one if there is one.
+    /// Parses an entity, in the memory of another one, if given.
     fn entity(&mut self, memory: &mut Option<Parsed<'a>>) -> Option<()> {
         let first = self.step()?;
         let (kind, kind_at) = (self.tokens.word(first), first.place());
         self.table = self.tables.named(self.registry, &kind.text);
-        // The type alone is written, before another entity.
+        // The type stands alone, before another entity.
         let is_alone = self.is_draft && self.table.is_some() && self.is_entity_type() && self.is_word(1);
         let name = match self.token() {
             Some(name) if !name.is_brace() && !is_alone => {
@@ -325,7 +327,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         Some(())
     }
 
-    /// Tells whether another attribute of the entity follows; if not, skips the closing brace.
+    /// Tells whether another attribute of the entity follows. Otherwise, skips the closing brace.
     fn body_goes_on(&mut self, entity: &Parsed<'a>) -> bool {
         self.body.end = self.token().map_or(self.tokens.text.len(), |token| token.start);
         if self.is(0, TokenForm::Close) {
@@ -352,7 +354,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         false
     }
 
-    /// Reads an attribute and its values, however many there are and whatever their form.
+    /// Reads an attribute and its values, regardless of their number and form.
     fn attribute(&mut self, entity: &mut Parsed<'a>) {
         let Some(name) = self.step().map(|name| self.tokens.word(name)) else { return };
         let table = self.table.map(|table| &self.tables[table]);
@@ -388,7 +390,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         entity.add(name, self.report);
     }
 
-    /// Skips an entity that is written where its name should be, and reports it.
+    /// Skips an entity in place of a name, and reports it.
     fn nested_entity(&mut self, kind: Kind, name: &Word<'a>, entity: &mut Parsed<'a>) {
         let Some(open) = self.step() else { return };
         let mut depth = 1;

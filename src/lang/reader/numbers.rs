@@ -1,4 +1,4 @@
-//! The named numbers and the functions of a scene, and formulas that stand for numbers.
+//! The named numbers and the functions of a scene, and formulas in place of numbers.
 
 use super::fault::{Fault, Place, Severity};
 use super::parsed::{Form, Word};
@@ -15,53 +15,53 @@ use tabray_exact::formula::{self, Formula, FormulaFault, Meant, Named, OwnFuncti
 /// The maximum number of names that a message lists.
 const LISTED: usize = 8;
 
-/// How a function is defined.
+/// The notation of a function definition, for messages.
 const FUNCTION: &str = "write a function as `let f(u, v) \"u^2 + v\"`";
 
-/// A number or a function that a scene names.
+/// A named number or function of a scene.
 struct Number {
     name: String,
-    /// `None` if the definition is faulty: then uses of the name are not reported.
+    /// The value, or `None` for a faulty definition. Uses of such a name are not reported.
     value: Option<Meant>,
     place: Place,
 }
 
-/// The numbers that are named so far.
+/// The numbers named so far.
 #[derive(Default)]
 pub struct Numbers<'a> {
     all: Vec<Number>,
     by_name: HashMap<String, usize>,
-    /// The text in the notes' syntax, in which names may be defined later.
+    /// The text in the notes' syntax, which may define names later.
     text: &'a str,
-    /// The names that are defined somewhere, once they are needed, and where.
+    /// The names defined anywhere in the text, with their places, found on first use.
     anywhere: Option<HashMap<String, Place>>,
 }
 
 impl<'a> Numbers<'a> {
-    /// Begins with no numbers of a text in the notes' syntax.
+    /// Begins without numbers, for a text in the notes' syntax.
     pub fn of(text: &'a str) -> Self {
         Self { text, ..Self::default() }
     }
 
-    /// Begins with no numbers of a text in which these names are defined.
+    /// Begins without numbers, for a text that defines these names.
     pub fn of_names(names: HashMap<String, Place>) -> Self {
         Self { anywhere: Some(names), ..Self::default() }
     }
 
-    /// Returns the number of names, to which [`keep`](Self::keep) returns.
+    /// Returns the number of names, for a later call of [`keep`](Self::keep).
     #[inline]
     pub fn len(&self) -> usize {
         self.all.len()
     }
 
-    /// Forgets all names but the first ones.
+    /// Forgets all names except the first `len`.
     pub fn keep(&mut self, len: usize) {
         for number in self.all.drain(len..) {
             self.by_name.remove(&number.name);
         }
     }
 
-    /// Changes a number, given by how many names were there before it.
+    /// Changes a number, given by the number of names before it.
     pub fn change(&mut self, index: usize, value: f64) {
         if let Some(number) = self.all.get_mut(index) {
             number.value = Some(Meant::Number(value));
@@ -73,13 +73,13 @@ impl<'a> Numbers<'a> {
         self.all.iter().map(|number| number.name.as_str())
     }
 
-    /// Names a number, or reports why it cannot have the name; `None` stands for a number that is faulty.
+    /// Names a number, or reports the reason why it cannot have the name. `None` stands for a faulty number.
     pub fn define(&mut self, name: &Word<'_>, value: Option<f64>, report: &mut Report<'_>) {
         self.name(name, value.map(Meant::Number), report);
     }
 
-    /// Defines a function by its head, `f(u, v)`, and the formula of its arguments, or reports why there can be none; `None` if
-    /// the word is no head of one.
+    /// Defines a function by its head, `f(u, v)`, and the formula of its arguments, or reports the reason why it cannot
+    /// be defined. Returns `None` if the word is not the head of a function.
     pub fn function(&mut self, head: &Word<'_>, value: &Word<'_>, report: &mut Report<'_>) -> Option<()> {
         let (name, arguments) = formula::head(&head.text)?;
         let function = match arguments {
@@ -136,8 +136,8 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Returns the number that a word stands for: a number, or a formula in quotes. Returns `None` after reporting that it
-    /// is neither, or if it depends on a number for which that is reported.
+    /// Returns the value of a word: a number, or a formula in quotes. Returns `None` after reporting an error, or if
+    /// the formula depends on a number with a reported error.
     pub fn number(&mut self, word: &Word<'_>, report: &mut Report<'_>) -> Option<f64> {
         if word.form != Form::Text {
             return values::number(&word.text)
@@ -171,7 +171,7 @@ impl<'a> Numbers<'a> {
         None
     }
 
-    /// Returns a word of an attribute's values with formulas and names replaced by numbers.
+    /// Returns a value of an attribute, with formulas and names replaced by numbers.
     pub fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
         match value_type {
             Some(value_type)
@@ -212,7 +212,7 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Parses a word as a formula, and notes the named numbers in it.
+    /// Parses a word as a formula, and collects the named numbers in it.
     fn formula(
         &self,
         word: &Word<'_>,
@@ -222,8 +222,8 @@ impl<'a> Numbers<'a> {
         self.named(used, |named| Formula::parse_with(&word.text, variables, named))
     }
 
-    /// Calls a function with the meanings of names, and notes which of them are numbers. Functions count as 0, and
-    /// faulty definitions as NaN.
+    /// Calls a function with the meanings of names, and collects the used names with their numbers. Functions count as
+    /// 0, and faulty definitions as NaN.
     fn named<T>(&self, used: &mut Vec<(String, f64)>, parse: impl FnOnce(Named<'_>) -> T) -> T {
         let seen = RefCell::new(used);
         parse(&|name| {
@@ -234,7 +234,7 @@ impl<'a> Numbers<'a> {
         })
     }
 
-    /// Returns the fault of a formula with what may have been meant.
+    /// Returns the error of a formula, with a suggestion.
     fn explained(&mut self, word: &Word<'_>, fault: FormulaFault, report: &Report<'_>) -> Fault {
         let mut told = Fault::error(word.within(&fault.place), fault.message);
         let Some(unknown) = fault.unknown else { return told.help(fault.help) };
@@ -260,7 +260,7 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Returns the names that are defined somewhere in the text.
+    /// Returns the names defined anywhere in the text.
     fn anywhere(&mut self) -> &HashMap<String, Place> {
         let text = self.text;
         self.anywhere.get_or_insert_with(|| {

@@ -23,8 +23,8 @@ use tabray_core::world::rules::{Fading, Falloff, Rules};
 use tabray_core::world::sky_light::SkyLight;
 
 impl Check<'_, '_> {
-    /// Constructs the objects and the lights. Those that read files, and those that others refer to, are constructed one
-    /// after the other: the memory that one takes is not left for the next, and one may refer to another before it.
+    /// Constructs the objects and the lights. Objects that read files, and objects that others refer to, are
+    /// constructed one after the other, because they share the remaining memory, and may refer to earlier ones.
     pub fn construct_waiting(&mut self, source: &Source<'_, '_>) -> Arc<Store> {
         let materials = self
             .materials
@@ -54,7 +54,7 @@ impl Check<'_, '_> {
         store
     }
 
-    /// Constructs the objects to which others refer, by their orders.
+    /// Constructs the objects that others refer to, by their orders.
     fn construct_patterns(
         &mut self,
         store: &Arc<Store>,
@@ -63,7 +63,7 @@ impl Check<'_, '_> {
     ) {
         let accuracy = self.setting.camera.accuracy;
         if self.names.combines && accuracy == Accuracy::Classic {
-            // The notes' formulas do not tell all hits of a ray, which solids need.
+            // Solids need all hits of a ray, which the notes' formulas do not give.
             Arc::make_mut(&mut self.setting).camera.accuracy = Accuracy::Exact;
         }
         for (order, datum) in patterns {
@@ -129,7 +129,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Constructs the body of an object within the memory that is left, and reports a refusal or warnings.
+    /// Constructs the body of an object within the remaining memory, and reports a refusal or warnings.
     fn body(&mut self, mut args: Args, source: &Source<'_, '_>) -> Option<Body> {
         let Construct::Object(construct) = args.entity.construct else { return None };
         args.setting = self.setting.clone();
@@ -149,7 +149,7 @@ impl Check<'_, '_> {
         Some(body)
     }
 
-    /// Returns a warning if a lamp has a falloff that changes nothing.
+    /// Returns a warning if a lamp has a falloff without effect.
     fn unused_falloff(&self, lamp: &Lamp) -> Option<Warning> {
         let is_used = lamp.fading.falloff == Falloff::None || self.setting.camera.rules == Rules::Free;
         (!is_used).then(|| Warning {
@@ -177,7 +177,7 @@ impl Check<'_, '_> {
     }
 }
 
-/// Returns the object as which a light is seen, if it is.
+/// Returns the visible object of a light, if it has one.
 fn surface(record: &Record, lamp: &Lamp) -> Option<Object> {
     let Body { shape, shader, .. } = Body::plain(lamp.shape()?);
     let ambient = lamp.emissivity(lamp.location())?;
@@ -185,7 +185,7 @@ fn surface(record: &Record, lamp: &Lamp) -> Option<Object> {
     Some(Object { args: record.clone(), material, shape, shader })
 }
 
-/// Returns why the notes' rules refuse a light.
+/// Returns the reason why the notes' rules refuse a light.
 fn only_free(attribute: Option<&'static str>) -> Refusal {
     Refusal {
         attribute,
@@ -194,12 +194,12 @@ fn only_free(attribute: Option<&'static str>) -> Refusal {
     }
 }
 
-/// Returns the visible objects of a body, with their own materials or with the material that the record names.
+/// Returns the visible objects of a body, with their own materials or with the material of the record.
 fn objects(record: Record, mut body: Body) -> impl Iterator<Item = Object> {
     let more = take(&mut body.more);
     iter::once(body).chain(more).filter_map(move |body| {
         let material = body.material.clone().or_else(|| record.material())?;
-        // Rays go on inside of what is refracted.
+        // Rays continue inside of refracting objects.
         let boundary = material.interface.as_ref().and_then(|_| body.boundary());
         let Body { shape, shader, .. } = body;
         Some(Object { args: record.clone(), material, shape: boundary.unwrap_or(shape), shader })
@@ -208,23 +208,23 @@ fn objects(record: Record, mut body: Body) -> impl Iterator<Item = Object> {
 
 /// The result of the constructor of an object or a light.
 enum Constructed {
-    /// Only a shape and a shader.
+    /// A shape and a shader alone.
     Plain(AnyShape, AnyShader),
-    /// An object with warnings, further objects or a material of its own.
+    /// An object with warnings, further objects or its own material.
     Body(Box<Body>),
     Light(Lamp),
-    /// An object that reads files: it is constructed later, one at a time.
+    /// An object that reads files. It is constructed later, one at a time.
     Deferred,
 }
 
 /// Constructs the objects and lights among some entities, except for `patterns`, the objects that others refer to, and
-/// for those that refer to faulty ones.
+/// except for entities that refer to faulty ones.
 fn constructed(
     store: &Store,
     orders: Range<usize>,
     patterns: &BTreeMap<usize, Datum>,
 ) -> Vec<(usize, Result<Constructed, Refusal>)> {
-    // Where it has to grow, it leaves holes in memory between the shapes.
+    // Growing the list would leave holes in memory between the shapes.
     let (mut constructed, mut memory) = (Vec::with_capacity(orders.len()), None);
     let mut last: Option<(&Entity, bool)> = None;
     for order in orders {
@@ -245,7 +245,7 @@ fn constructed(
     constructed
 }
 
-/// Returns what is made of a body. Most objects take a fraction of its memory.
+/// Returns the result for a body. Most objects take a fraction of its memory.
 fn of(body: Body) -> Constructed {
     let is_all = body.warnings.is_empty() && body.more.is_empty() && body.material.is_none();
     let is_all = is_all && body.boundary.is_none();

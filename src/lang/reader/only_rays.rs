@@ -7,7 +7,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 use tabray_core::scene::value::Datum;
 
-/// The name of the camera that a scene without one is given. No answer depends on it.
+/// The name of the camera that is added to a scene without one. No answer depends on it.
 pub const UNUSED_CAMERA: &str = "a camera that is not used";
 
 const CAMERA: &str =
@@ -18,8 +18,8 @@ position = [0, 0, 1]
 target = [0, 0, 0]
 angle = 40";
 
-/// Returns the text of a scene for questions about rays only. The scene consists of the mesh in a file, whose name is
-/// relative to the scene's folder.
+/// Returns the text of a scene for queries of rays. It consists of the mesh in a file, whose name is relative to the
+/// scene's folder.
 pub fn mesh_for_rays(file: &Path) -> String {
     let text = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let (name, file) = (text(file.file_stem()), Datum::Word(text(file.file_name())));
@@ -27,7 +27,7 @@ pub fn mesh_for_rays(file: &Path) -> String {
     format!("{CAMERA}\nmaterial grey {{ }}\nmesh {name} {{ material grey file {file} }}\n")
 }
 
-/// Returns the text of a scene that lacks a camera, with one.
+/// Returns the text of a scene with a camera added.
 pub fn with_camera(bytes: &[u8], syntax: Syntax) -> Vec<u8> {
     let camera = if syntax == Syntax::Toml { CAMERA_IN_TOML } else { CAMERA };
     [bytes, b"\n", camera.as_bytes()].concat()

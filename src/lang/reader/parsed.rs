@@ -1,4 +1,4 @@
-//! Parsed entities: kind, name, attributes and values, each with its place and not yet checked.
+//! Parsed entities: type, name, attributes and values, each with its place, before any check.
 
 use super::fault::{Fault, Place};
 use super::report::Report;
@@ -15,18 +15,18 @@ pub(crate) struct Word<'a> {
     pub place: Place,
 }
 
-/// What the syntax says about a word's type.
+/// The type of a word according to the syntax.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     /// Unknown: a word of the notes' syntax may be a number or a name.
     Any,
-    /// A number, as TOML writes it.
+    /// A number in TOML.
     Number,
-    /// Text, because the word stands in quotes.
+    /// Text, because the word is quoted.
     Text,
-    /// Yes or no, as TOML writes it: `true` or `false`.
+    /// Yes or no in TOML: `true` or `false`.
     Truth,
-    /// A formula whose fault is reported.
+    /// A formula with a reported error.
     Faulty,
 }
 
@@ -40,8 +40,8 @@ impl<'a> Word<'a> {
         Self { text: Cow::Owned(text.into()), form: Form::Any, place: None }
     }
 
-    /// Returns the place of a part of the word, given in bytes: all of the word where the text does not contain it
-    /// exactly as written, without escapes.
+    /// Returns the place of a part of the word, given in bytes. If the text does not contain the word exactly as it is,
+    /// without escapes, returns the place of the whole word.
     pub fn within(&self, part: &Range<usize>) -> Place {
         let quotes = usize::from(self.form == Form::Text);
         let place = self.place.clone()?;
@@ -53,27 +53,28 @@ impl<'a> Word<'a> {
     }
 }
 
-/// The maximum number of values that are kept for an attribute. No attribute takes as many (`every_table_keeps_its_own_rules`).
+/// The maximum number of values that are kept for an attribute. No attribute takes as many
+/// (`every_table_keeps_its_own_rules`).
 pub(crate) const MAX_VALUES: usize = 1000;
 
-/// What the values of attributes are, for messages about others.
+/// A description of attribute values, for messages about invalid ones.
 pub(crate) const VALUES: &str = "values are numbers, quoted words, or several of them in brackets";
 
 /// The maximum number of attributes that are kept for an entity. No type has as many.
 pub(crate) const MAX_ATTRIBUTES: usize = 1000;
 
-/// An entity as parsed, not yet checked.
+/// A parsed entity, before any check.
 #[derive(Clone, Debug)]
 pub struct Parsed<'a> {
     pub(crate) kind: Word<'a>,
     pub(crate) name: Word<'a>,
-    /// The names of the attributes, each with the number of all values up to its own last one.
+    /// The names of the attributes, each with the number of values up to its own last one.
     attributes: Vec<(Word<'a>, usize)>,
     /// The values of all attributes.
     values: Vec<Word<'a>>,
     /// The range from the entity's type to its end.
     pub(crate) place: Place,
-    /// Whether some of the entity's text could not be parsed. Then missing attributes are not reported.
+    /// Whether some of the entity's text could not be parsed. Missing attributes are then not reported.
     pub(crate) is_damaged: bool,
 }
 
@@ -92,7 +93,7 @@ impl<'a> Parsed<'a> {
         (self.place, self.is_damaged) = (None, false);
     }
 
-    /// Adds a value of the attribute that [`add`](Self::add) adds next. Beyond [`MAX_VALUES`] it is not kept.
+    /// Adds a value to the next attribute that [`add`](Self::add) adds. Values beyond [`MAX_VALUES`] are not kept.
     #[inline]
     pub(crate) fn value(&mut self, value: Word<'a>) {
         if self.values.len() - self.attributes.last().map_or(0, |(_, end)| *end) < MAX_VALUES {
@@ -100,13 +101,13 @@ impl<'a> Parsed<'a> {
         }
     }
 
-    /// Adds a value, however many there are.
+    /// Adds a value, regardless of their number.
     #[inline]
     pub(crate) fn keep(&mut self, value: Word<'a>) {
         self.values.push(value);
     }
 
-    /// Adds an attribute with the values added since the one before; beyond [`MAX_ATTRIBUTES`] reports it instead.
+    /// Adds an attribute with the values added since the one before. Beyond [`MAX_ATTRIBUTES`], reports it instead.
     #[inline]
     pub(crate) fn add(&mut self, name: Word<'a>, report: &mut Report<'_>) {
         match self.attributes.len() {
@@ -140,7 +141,7 @@ impl<'a> Parsed<'a> {
         self.attributes.push((name, self.values.len()));
     }
 
-    /// Tells whether any value is in quotes.
+    /// Tells whether any value is quoted.
     pub(crate) fn has_quotes(&self) -> bool {
         self.values.iter().any(|value| value.form == Form::Text)
     }
@@ -157,8 +158,8 @@ impl<'a> Parsed<'a> {
         }
     }
 
-    /// Changes the names of all attributes and all values, in the order of the text, until that fails. `change` is told of
-    /// each word whether it is a value.
+    /// Changes the names of all attributes and all values, in the order of the text, until `change` fails. Its second
+    /// argument tells whether the word is a value.
     pub(super) fn all_words(&mut self, mut change: impl FnMut(&mut Word<'a>, bool) -> bool) -> bool {
         let mut start = 0;
         for (name, end) in &mut self.attributes {
@@ -171,7 +172,7 @@ impl<'a> Parsed<'a> {
         start == self.values.len()
     }
 
-    /// Gives back memory that the entity does not need.
+    /// Frees unneeded memory.
     pub(crate) fn shrink(&mut self) {
         self.attributes.shrink_to_fit();
         self.values.shrink_to_fit();
@@ -183,7 +184,7 @@ impl<'a> Parsed<'a> {
         indexed.map(|(index, (name, _))| (name, self.values_of(index)))
     }
 
-    /// Returns the values of the attribute of this index.
+    /// Returns the values of the attribute with this index.
     #[inline]
     pub(crate) fn values_of(&self, index: usize) -> &[Word<'a>] {
         let start = index.checked_sub(1).map_or(0, |before| self.attributes[before].1);
@@ -211,9 +212,9 @@ impl Parsed<'static> {
     }
 }
 
-/// Values that can be given to an attribute in Rust. Numbers keep every bit.
+/// Values for attributes in Rust. Numbers keep all bits.
 pub trait Values {
-    /// Returns the words that stand for the values in a scene.
+    /// Returns the words for the values in a scene.
     fn words(self) -> Vec<String>;
 }
 

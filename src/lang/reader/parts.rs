@@ -1,16 +1,16 @@
-//! The parts of a scene's text: its file, the files that it includes, and the options that set values. All places count
-//! from the beginning of the first part.
+//! The parts of a scene's text: its file, the included files, and the options that set values. Places count from the
+//! beginning of the first part.
 
 use std::ops::Range;
 
-/// A part of a scene's text, which messages name.
+/// A named part of a scene's text.
 #[derive(Clone, Debug)]
 pub struct TextPart {
     /// The name of the file, or the option.
     pub name: String,
-    /// The part's range of the whole text, in bytes.
+    /// The range of the part in the whole text, in bytes.
     pub range: Range<usize>,
-    /// The place where a file is included whose name is not that of a scene. Messages show nothing of such a file,
+    /// The place of the `include`, for a file without the name of a scene. Messages show nothing of such a file,
     /// because it may be any file of the machine.
     pub included_at: Option<Range<usize>>,
 }
@@ -19,7 +19,7 @@ pub struct TextPart {
 pub struct Parts<'t>(Vec<Lines<'t>>);
 
 impl<'t> Parts<'t> {
-    /// Finds the lines of a text. It is one part of this name if there are no others.
+    /// Finds the lines of a text. Without parts, it is one part with this name.
     pub fn of(name: &'t str, text: &'t str, parts: &'t [TextPart]) -> Self {
         if parts.is_empty() {
             return Self(vec![Lines::of(name, text, 0)]);
@@ -32,7 +32,7 @@ impl<'t> Parts<'t> {
         )
     }
 
-    /// Returns the part in which a byte of the whole text lies.
+    /// Returns the part that contains a byte of the whole text.
     pub fn at(&self, byte: usize) -> &Lines<'t> {
         let after = self.0.partition_point(|part| part.start <= byte);
         &self.0[after.saturating_sub(1)]
@@ -46,7 +46,7 @@ pub struct Lines<'t> {
     pub text: &'t str,
     /// The position of the part in the whole text, in bytes.
     start: usize,
-    /// The positions of the line ends in the part, in bytes, without that of the last line.
+    /// The positions of the line ends in the part, in bytes, except for that of the last line.
     pub ends: Vec<usize>,
 }
 
@@ -60,7 +60,7 @@ impl<'t> Lines<'t> {
         (self.start..=self.start + self.text.len()).contains(&byte)
     }
 
-    /// Returns a place of the whole text as a place in this part.
+    /// Converts a place in the whole text to a place in this part.
     pub fn place(&self, place: &Range<usize>) -> Range<usize> {
         let local = |at: usize| at.saturating_sub(self.start).min(self.text.len());
         local(place.start)..local(place.end)

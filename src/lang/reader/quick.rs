@@ -1,5 +1,5 @@
-//! Checks and packs entities without faults. All other entities are left to
-//! [`AttributeChecker`](super::attributes::AttributeChecker), which explains what is wrong.
+//! Checks and packs valid entities. All others are left to [`AttributeChecker`](super::attributes::AttributeChecker),
+//! which explains the errors.
 
 use super::guesses::{Table, Tables};
 use super::names::Names;
@@ -15,31 +15,31 @@ use tabray_core::scene::kind::Kind;
 use tabray_core::scene::store::{Packer, Store};
 use tabray_core::scene::value::{Datum, Type};
 
-/// Entities that were checked and packed, and the memory in which that is done.
+/// Checked and packed entities, with scratch memory.
 pub struct Quick<'r> {
     registry: &'r Registry,
     tables: Tables,
     bytes: Vec<u8>,
-    /// The entities, with their ranges of the bytes; `None` where something is out of the ordinary.
+    /// The entities, with their ranges of the bytes, or `None` for an unusual entity.
     entities: Vec<Option<Packed<Range<usize>>>>,
     /// The values of an attribute.
     numbers: Datum,
     whole: Datum,
-    /// The indices of the entity's attributes, for each attribute of its table.
+    /// For each attribute of the table, the index of the entity's attribute.
     given: Vec<Option<usize>>,
 }
 
-/// An entity that was checked and packed.
+/// A checked and packed entity.
 pub struct Packed<B> {
-    /// Its type.
+    /// The type.
     pub entity: &'static Entity,
-    /// The hash of its name.
+    /// The hash of the name.
     pub hash: u32,
     pub bytes: B,
 }
 
 impl<'r> Quick<'r> {
-    /// Checks no entities yet.
+    /// Makes a checker without entities.
     pub fn new(registry: &'r Registry) -> Self {
         Self {
             registry,
@@ -52,15 +52,15 @@ impl<'r> Quick<'r> {
         }
     }
 
-    /// Tells whether nothing can refer to an entity, so that entities after it can be checked before it, and it is not the
-    /// first of its type.
+    /// Tells whether an entity can wait: nothing can refer to it, and it is not the first of its type. Entities after
+    /// it can be checked before it.
     pub fn waits(&mut self, store: &Store, parsed: &Parsed<'_>) -> bool {
         let Some(table) = self.tables.named(self.registry, &parsed.kind.text) else { return false };
         let entity = self.tables[table].entity;
         matches!(entity.kind(), Kind::Object | Kind::Light) && store.number(entity).is_some()
     }
 
-    /// Returns the entities that were checked, or `None` where something is out of the ordinary.
+    /// Returns the checked entities, or `None` for unusual ones.
     pub fn packed(&self) -> impl Iterator<Item = Option<Packed<&[u8]>>> {
         self.entities.iter().map(|packed| {
             let Packed { entity, hash, bytes } = packed.as_ref()?;
@@ -68,8 +68,8 @@ impl<'r> Quick<'r> {
         })
     }
 
-    /// Checks objects and lights, and keeps them instead of those checked before. The entities that they refer to must
-    /// be defined.
+    /// Checks objects and lights, and keeps them in place of the previous ones. The entities that they refer to must be
+    /// defined.
     pub fn check(&mut self, names: &Names, store: &Store, parsed: &[&Parsed<'_>]) {
         self.bytes.clear();
         self.entities.clear();
@@ -87,7 +87,7 @@ impl<'r> Quick<'r> {
         }
     }
 
-    /// Packs an entity, and returns its type; `None` where something is out of the ordinary.
+    /// Packs an entity, and returns its type, or `None` for an unusual entity.
     fn pack(&mut self, names: &Names, store: &Store, parsed: &Parsed<'_>) -> Option<&'static Entity> {
         if parsed.is_damaged || parsed.count() == 0 {
             return None;
@@ -97,7 +97,7 @@ impl<'r> Quick<'r> {
         let number = store.number(table.entity)?;
         find(table, parsed, &mut self.given)?;
         let mut packed = Packer::begin(&mut self.bytes, number, &parsed.name.text, true);
-        // Defaults at the end take no memory: most objects name no shader.
+        // Defaults at the end take no memory, because most objects name no shader.
         let mut defaults = 0;
         for (known, given) in table.iter().zip(&self.given) {
             let Some(given) = given else {
@@ -141,8 +141,8 @@ impl<'r> Quick<'r> {
     }
 }
 
-/// Finds the attributes of a table that an entity has, each by its index; `None` where one is unknown or repeated, or one of
-/// several is not given exactly once.
+/// Finds an entity's attributes in a table, by their indices. Returns `None` if one is unknown or repeated, or if a
+/// group is not given exactly once.
 fn find(table: &Table, parsed: &Parsed<'_>, given: &mut Vec<Option<usize>>) -> Option<()> {
     given.clear();
     given.resize(table.len(), None);
@@ -160,7 +160,7 @@ fn is_right(attribute: &dyn Attribute, datum: &Datum) -> bool {
     attribute.allows(datum) && attribute.beyond_squares(datum).is_none()
 }
 
-/// Reads numbers into a list, and replaces the numbers in it.
+/// Reads numbers into a list, in place of its contents.
 fn read<T>(numbers: &mut Vec<T>, words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Option<()> {
     numbers.clear();
     for word in words {

@@ -1,4 +1,4 @@
-//! Warnings of names that several entities have.
+//! Warnings about names shared by several entities.
 
 use super::fault::{Fault, Place};
 use super::names::{Names, RepeatedClaims, Scope, scope};
@@ -12,9 +12,9 @@ use tabray_core::text;
 const MAX_LISTED: usize = 8;
 
 impl Names {
-    /// Warns of names that several entities have: once for each name, or once for all of them where they are many.
-    /// `place` returns the place of an entity's name, given the entity's order. If entities `may_share` a name, there
-    /// is no warning where all of them are used.
+    /// Warns of names shared by several entities: once for each name, or once for all if there are many. `place`
+    /// returns the place of an entity's name, given the entity's order. If entities `may_share` a name, there is no
+    /// warning if all of them are used.
     pub fn report_repeated(
         &self,
         store: &Store,
@@ -66,8 +66,8 @@ impl Names {
         }
     }
 
-    /// Returns the names that several entities have: first the names for which only the first entity is used, then the
-    /// names for which all entities are used.
+    /// Returns the names shared by several entities: first the names where only the first entity is used, then those
+    /// where all are used.
     fn repeated<'s>(&self, store: &'s Store) -> [Vec<Repeated<'s>>; 2] {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
         for (first, RepeatedClaims { again, .. }) in &self.again {
@@ -98,9 +98,9 @@ struct Repeated<'n> {
     what: String,
     text: &'n str,
     orders: Vec<usize>,
-    /// The number of other names that it stands for.
+    /// The number of other names that this represents.
     others: usize,
-    /// The number of places that it stands for, beside the first two.
+    /// The number of places that this represents, beside the first two.
     more: usize,
 }
 
@@ -111,9 +111,9 @@ impl<'n> Repeated<'n> {
     }
 }
 
-/// Returns repeated names. If there are more than [`MAX_LISTED`], the first name stands for all.
+/// Returns repeated names. If there are more than [`MAX_LISTED`], the first name represents all.
 fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<Repeated<'_>> {
-    // Entities without places come in the order of their names.
+    // Entities without places are sorted by name.
     all.sort_unstable_by_key(|repeated| (is_placed.then_some(repeated.orders[1]), repeated.text));
     if all.len() > MAX_LISTED {
         let later: usize = all.iter().map(|repeated| repeated.orders.len() - 1).sum();

@@ -1,4 +1,4 @@
-//! All faults of a scene: the first ones are listed, and the others are counted.
+//! All faults of a scene. The first ones are listed, and the others are counted.
 
 use super::excerpt::rendered;
 use super::fault::{Fault, Place, Severity};
@@ -12,11 +12,10 @@ use std::ops::Range;
 use std::path::PathBuf;
 use tabray_core::text;
 
-/// The maximum number of errors of one scene that are listed, and the maximum number of warnings. The others are
-/// counted.
+/// The maximum number of listed errors of a scene, and that of listed warnings. The others are counted.
 const MAX_LISTED: usize = 100;
 
-/// The maximum number of faults differing only in their places that are listed separately. If there are more, only the
+/// The maximum number of faults that differ only in their places and are listed separately. If there are more, only the
 /// first is listed, with their number.
 const MAX_ALIKE: usize = 8;
 
@@ -37,7 +36,7 @@ pub struct Report<'t> {
     files: Vec<PathBuf>,
 }
 
-/// What a report knows beside the faults themselves. It is boxed, so that a report is cheap to move.
+/// The data of a report beside the faults. It is boxed to make moving a report cheap.
 #[derive(Clone, Debug, Default)]
 struct Notes {
     /// The number of errors and of warnings, listed or not.
@@ -48,30 +47,30 @@ struct Notes {
     guesses: Guesses,
     /// The parts of the text, if there are several.
     parts: Vec<TextPart>,
-    /// The ranges of the text that are read more than once. At each place in such a range, only one fault is listed.
+    /// The ranges of the text that are read more than once. For each place in such a range, only one fault is listed.
     repeated: Vec<Range<usize>>,
 }
 
 impl<'t> Report<'t> {
-    /// Makes an empty report on a scene's text; `name` is what messages call the scene.
+    /// Makes an empty report on a scene's text. `name` is the scene's name in messages.
     pub fn new(name: impl Into<String>, text: impl Into<Cow<'t, str>>, syntax: Syntax) -> Self {
         Self { name: name.into(), text: text.into(), syntax, ..Self::default() }
     }
 
-    /// Divides the text into parts, which messages name.
+    /// Divides the text into named parts.
     pub(super) fn in_parts(mut self, parts: &[TextPart]) -> Self {
         self.notes.parts = parts.to_vec();
         self
     }
 
-    /// Notes that a range of the text is read more than once: at each place in it, only one fault is listed.
+    /// Notes that a range of the text is read more than once. For each place in it, only one fault is listed.
     pub(super) fn repeat(&mut self, range: Range<usize>) {
         if self.notes.repeated.len() < MAX_REPEATED {
             self.notes.repeated.push(range);
         }
     }
 
-    /// Returns the report with a text of its own, if there is anything to show in the text.
+    /// Returns the report with its own copy of the text, if the text is needed.
     pub(super) fn into_owned(self) -> Report<'static> {
         let is_shown = !self.faults.is_empty();
         let text = if is_shown { self.text.into_owned() } else { String::new() };
@@ -80,7 +79,7 @@ impl<'t> Report<'t> {
         Report { name, text: text.into(), syntax, faults, notes, files }
     }
 
-    /// Leaves out the places of all faults, for a text that nobody wrote.
+    /// Removes the places of all faults, for a generated text.
     pub fn without_places(mut self) -> Self {
         for fault in &mut self.faults {
             fault.place = None;
@@ -90,12 +89,12 @@ impl<'t> Report<'t> {
         self
     }
 
-    /// Returns the syntax in which messages show what would be right.
+    /// Returns the syntax of corrections in messages.
     pub fn syntax(&self) -> Syntax {
         self.syntax
     }
 
-    /// Adds a fault at its position in the text's order, or counts it where enough others come before it.
+    /// Adds a fault in the order of the text, or counts it if enough others come before it.
     pub fn add(&mut self, mut fault: Fault) {
         if self.conceal(&mut fault) && self.faults.iter().any(|told| told.is_like(&fault)) {
             return;
@@ -113,7 +112,7 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// Replaces a fault in a part whose text is not shown; tells whether the fault is in such a part.
+    /// Replaces a fault in a part whose text is not shown. Tells whether the fault is in such a part.
     fn conceal(&self, fault: &mut Fault) -> bool {
         let part_at = |place: &Place| {
             let place = place.as_ref()?;
@@ -137,7 +136,7 @@ impl<'t> Report<'t> {
         concealed
     }
 
-    /// Adds a fault that stands for others like it.
+    /// Adds a fault that represents similar ones.
     pub(super) fn add_gathered(&mut self, mut fault: Fault) {
         if self.conceal(&mut fault) {
             return self.add(fault);
@@ -147,18 +146,18 @@ impl<'t> Report<'t> {
         self.insert(fault);
     }
 
-    /// Shows the faults in a text in which every letter stands where it stands in the scene's own.
+    /// Shows the faults in another version of the scene's own text, in which each character has the same place.
     pub(super) fn shows_in_place(&mut self, own: &str) {
         let mut text = own.to_owned();
         text += self.text.get(own.len()..).unwrap_or_default();
-        // There, a place may begin or end within a letter that several others stand for here.
+        // A place may begin or end within a character there, in place of several characters here.
         for fault in &mut self.faults {
             fault.tidy(&text);
         }
         self.text = text.into();
     }
 
-    /// Tells whether a fault was found before, in another round of a text that is repeated.
+    /// Tells whether a fault was found before, in another round of a repeated text.
     fn is_again(&self, fault: &Fault) -> bool {
         let is_repeated = |at: &usize| self.notes.repeated.iter().any(|range| range.contains(at));
         let is_there = fault.place.as_ref().is_some_and(|place| is_repeated(&place.start));
@@ -166,7 +165,7 @@ impl<'t> Report<'t> {
             && self.faults.iter().any(|told| told.severity == fault.severity && told.place == fault.place)
     }
 
-    /// Counts faults that come after so many others that none would be listed.
+    /// Counts faults after so many others that none would be listed.
     pub(super) fn count_more(&mut self, severity: Severity, count: usize) {
         self.notes.counts[severity as usize] += count;
     }
@@ -191,7 +190,7 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// Tells whether a fault there would be listed. If not, there is no need to find out what would be right.
+    /// Tells whether a fault at a place would be listed. If not, its correction need not be found.
     pub(super) fn would_list(&self, severity: Severity, place: &Place) -> bool {
         let is_after = |told: &Fault| place.as_ref().map_or(0, |place| place.start) >= told.start();
         let last = self.faults.iter().rfind(|told| told.severity == severity);
@@ -218,24 +217,23 @@ impl<'t> Report<'t> {
         self.count(Severity::Error) > 0
     }
 
-    /// Tells whether there are so many errors that reading on is of no use. From then on the report is marked as cut
-    /// short.
+    /// Tells whether there are so many errors that reading stops. From then on, the report is marked as cut short.
     pub(crate) fn has_enough(&mut self) -> bool {
         self.notes.is_cut_short |= self.count(Severity::Error) >= MAX_ERRORS;
         self.notes.is_cut_short
     }
 
-    /// Returns the guesses of misspelt attributes.
+    /// Returns the guesses for misspelt attributes.
     pub(super) fn guesses(&mut self) -> &mut Guesses {
         &mut self.notes.guesses
     }
 
-    /// Returns the number of faults of this severity, listed or not.
+    /// Returns the number of faults with this severity, listed or not.
     pub fn count(&self, severity: Severity) -> usize {
         self.notes.counts[severity as usize]
     }
 
-    /// Says how many faults there are beside the listed ones.
+    /// Describes the number of faults beside the listed ones.
     pub(super) fn rest(&self) -> Option<String> {
         let told = |severity| {
             let told = self.faults.iter().filter(|fault| fault.severity == severity);

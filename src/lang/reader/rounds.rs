@@ -1,4 +1,4 @@
-//! What a scene repeats: the rounds of its `repeat`s, and the names and numbers in them.
+//! The rounds of a scene's `repeat`s, with their names and numbers.
 
 use super::fault::{Fault, Place};
 use super::guesses::Table;
@@ -12,12 +12,12 @@ use std::ops::Range;
 use tabray_core::scene::choice::Choices;
 use tabray_core::scene::value::Type;
 
-/// The maximum number of rounds and of repeated entities of a scene, and the maximum length of the texts of all rounds,
-/// in bytes.
+/// The maximum number of rounds and repeated entities of a scene, and the maximum length of the texts of all rounds, in
+/// bytes.
 const MOST: usize = 1_000_000;
 const MOST_BYTES: usize = 1 << 28;
 
-/// The maximum number of `repeat`s within each other. Where each has two rounds or more, 20 of them have too many already.
+/// The maximum nesting of `repeat`s. With two or more rounds each, 20 of them are already too many.
 const DEEPEST: usize = 32;
 
 /// The rounds of a scene's `repeat`s.
@@ -25,29 +25,29 @@ const DEEPEST: usize = 32;
 pub struct Rounds<'a> {
     /// The numbers of the scene, and of the rounds.
     numbers: Numbers<'a>,
-    /// The values that are set beside the text.
+    /// The values set beside the text.
     pub sets: Sets<'a>,
     open: Vec<Round>,
-    /// How many rounds and repeated entities there were, and the length of their texts, in bytes.
+    /// The number of rounds and repeated entities so far, and the length of their texts, in bytes.
     count: usize,
     bytes: usize,
-    /// The ranges of the text that are read more than once and that have not been taken yet.
+    /// The ranges of the text that are read more than once, and that have not been taken yet.
     repeated: Vec<Range<usize>>,
 }
 
-/// A `repeat` that is under way.
+/// A `repeat` in progress.
 struct Round {
-    /// The place of its name.
+    /// The place of the name.
     place: Place,
     index: u64,
     count: u64,
-    /// The number of names outside of it.
+    /// The number of names outside of the `repeat`.
     names: usize,
-    /// The position of its body in the text, in bytes.
+    /// The position of the body in the text, in bytes.
     start: usize,
-    /// The number of errors when it began.
+    /// The number of errors before the `repeat`.
     errors: usize,
-    /// The names of the entities in its body.
+    /// The names of the entities in the body.
     entities: HashSet<String>,
 }
 
@@ -57,23 +57,23 @@ impl<'a> Rounds<'a> {
         Self { numbers: Numbers::of(text), sets, ..Self::default() }
     }
 
-    /// Begins with a text in which these numbers are defined.
+    /// Begins with a text that defines these numbers.
     pub fn of_names(names: HashMap<String, Place>, sets: Sets<'a>) -> Self {
         Self { numbers: Numbers::of_names(names), sets, ..Self::default() }
     }
 
-    /// Tells whether a `repeat` is under way.
+    /// Tells whether a `repeat` is in progress.
     #[inline]
     pub fn is_open(&self) -> bool {
         !self.open.is_empty()
     }
 
-    /// Tells whether no entity so far was other than its text, and the next one is not.
+    /// Tells whether all entities so far equal their text, and the next one will.
     pub fn is_plain(&self) -> bool {
         self.count == 0 && self.open.is_empty() && self.numbers.len() == 0 && self.sets.is_empty()
     }
 
-    /// Gives an entity the name of this round, and replaces formulas and set values by numbers.
+    /// Adds the round to an entity's name, and replaces formulas and set values by numbers.
     pub fn entity(
         &mut self,
         entity: &mut Parsed<'a>,
@@ -84,7 +84,7 @@ impl<'a> Rounds<'a> {
         if self.is_open() {
             self.rename(&mut entity.name);
         }
-        // Words that are not in quotes mean what they say, unless they may be names of this round or of numbers.
+        // Words without quotes have no other meaning, unless they may be names in this round or names of numbers.
         if let Some(table) = table
             && (self.is_open() || self.numbers.len() > 0 || entity.has_quotes())
         {
@@ -98,7 +98,7 @@ impl<'a> Rounds<'a> {
         }
     }
 
-    /// Names a number, whose value an option may override, or defines a function.
+    /// Defines a number, which an option may override, or a function.
     pub fn define(&mut self, name: &Word<'a>, value: &Word<'a>, report: &mut Report<'_>) {
         if self.numbers.function(name, value, report).is_some() {
             return;
@@ -113,8 +113,8 @@ impl<'a> Rounds<'a> {
         self.open.last().and_then(|round| round.place.clone())
     }
 
-    /// Begins the first round of a `repeat` that counts in `name`, or reports why there are none. `entities` are the names
-    /// of the entities in its body, which begins at `start`.
+    /// Begins the first round of a `repeat` with the counter `name`, or reports the reason why there are no rounds. The
+    /// body begins at `start`, and has entities with the names `entities`.
     pub fn begin(
         &mut self,
         name: &Word<'_>,
@@ -146,8 +146,8 @@ impl<'a> Rounds<'a> {
         count > 0 && !is_too_deep
     }
 
-    /// Ends a round whose body ends at `end`. Returns the position of the body if there is another round; otherwise the
-    /// `repeat` is over.
+    /// Ends a round whose body ends at `end`. Returns the position of the body for another round, or `None` after the
+    /// last one.
     pub fn next(&mut self, end: usize, errors: usize, report: &mut Report<'_>) -> Option<usize> {
         let is_more = {
             let round = self.open.last_mut()?;
@@ -175,7 +175,7 @@ impl<'a> Rounds<'a> {
         }
     }
 
-    /// Counts a round, and reports if there are too many.
+    /// Counts a round, and reports too many.
     fn has_room(&mut self, report: &mut Report<'_>) -> bool {
         self.count += 1;
         let is_there = self.count <= MOST && self.bytes <= MOST_BYTES;
@@ -190,7 +190,7 @@ impl<'a> Rounds<'a> {
         is_there
     }
 
-    /// Adds the number of its round to the name of an entity.
+    /// Adds the number of the round to the name of an entity.
     fn rename(&mut self, name: &mut Word<'a>) {
         self.count += 1;
         *name.text.to_mut() += &self.suffix(self.open.len());
@@ -200,8 +200,8 @@ impl<'a> Rounds<'a> {
         self.open[..depth].iter().map(|round| format!("_{}", round.index)).collect()
     }
 
-    /// Returns a word of an attribute's values with formulas replaced by numbers, and with the name of an entity in the
-    /// body replaced by the name of that entity in this round.
+    /// Returns a value of an attribute, with formulas replaced by numbers, and with the name of an entity in the body
+    /// replaced by its name in this round.
     fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
         if let Some(Type::Name(_) | Type::Choice(Choices { kind: Some(_), .. })) = value_type {
             let depth = self.open.iter().rposition(|round| round.entities.contains(&*word.text));

@@ -1,4 +1,4 @@
-//! Values that are set beside the text of a scene: `--set ball.radius=3`.
+//! Values set beside the text of a scene: `--set ball.radius=3`.
 
 use super::fault::Fault;
 use super::guesses::find_attribute;
@@ -14,10 +14,10 @@ use tabray_core::text::nearest;
 /// The name of the options in messages.
 pub const OPTION: &str = "--set";
 
-/// The maximum number of names that are kept to guess which of them was meant.
+/// The maximum number of names that are kept for suggestions.
 const MAX_NAMES: usize = 10_000;
 
-/// The values that are set.
+/// The set values.
 #[derive(Default)]
 pub struct Sets<'a> {
     all: Vec<Set<'a>>,
@@ -27,19 +27,19 @@ pub struct Sets<'a> {
     numbers: BTreeSet<String>,
 }
 
-/// The values of one attribute, or a number.
+/// The values set for an attribute or a number.
 struct Set<'a> {
     /// The name of the entity or of the number.
     name: Word<'a>,
-    /// The attribute; `None` for a number.
+    /// The attribute, or `None` for a number.
     attribute: Option<Word<'a>>,
     values: Vec<Word<'a>>,
-    /// Whether the scene has what is set.
+    /// Whether the scene has this attribute or number.
     is_met: bool,
 }
 
 impl<'a> Sets<'a> {
-    /// Reads the options in a range of a text, each on a line of its own.
+    /// Reads the options in a range of a text, each on its own line.
     pub fn of(text: &'a str, range: Range<usize>, report: &mut Report<'_>) -> Self {
         let (mut sets, mut start) = (Self::default(), range.start);
         for line in text[range].split('\n') {
@@ -49,13 +49,13 @@ impl<'a> Sets<'a> {
         sets
     }
 
-    /// Tells whether nothing is set.
+    /// Tells whether no value is set.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
-    /// Returns the word that is set for a number, if there is one.
+    /// Returns the word set for a number, if any.
     pub fn number(&mut self, name: &str) -> Option<Word<'a>> {
         if self.all.is_empty() {
             return None;
@@ -69,7 +69,7 @@ impl<'a> Sets<'a> {
         found
     }
 
-    /// Gives an entity the values that are set for it, with formulas replaced by numbers.
+    /// Applies the values set for an entity, with formulas replaced by numbers.
     pub fn apply(
         &mut self,
         entity: &mut Parsed<'a>,
@@ -86,7 +86,7 @@ impl<'a> Sets<'a> {
         self.put(entity, registry, Some((numbers, report)));
     }
 
-    /// Gives an entity the words that are set for it. Where named numbers are given, formulas are replaced by numbers.
+    /// Applies the words set for an entity. If named numbers are given, formulas are replaced by numbers.
     pub fn put(
         &self,
         entity: &mut Parsed<'a>,
@@ -113,7 +113,7 @@ impl<'a> Sets<'a> {
         }
     }
 
-    /// Reports what is set and not in the scene.
+    /// Reports values set for names that are not in the scene.
     pub fn report_unmatched(&self, report: &mut Report<'_>) {
         for set in self.all.iter().filter(|set| !set.is_met) {
             let (what, known) = match set.attribute {
@@ -133,7 +133,7 @@ impl<'a> Sets<'a> {
 const HELP: &str = "`--set ENTITY.ATTRIBUTE=VALUES` sets the values of an attribute, and `--set NUMBER=VALUE` that of a `let`";
 
 impl<'a> Set<'a> {
-    /// Tells whether an attribute of this entity is set: it has the name, or its type and its name are given.
+    /// Tells whether an attribute of this entity is set, by its name alone or by its type and name.
     fn is_of(&self, entity: &Parsed<'_>) -> bool {
         let (kind, name) = (&*entity.kind.text, &*entity.name.text);
         let rest = || self.name.text.strip_prefix(kind).and_then(|rest| rest.strip_prefix('.'));

@@ -1,5 +1,5 @@
-//! The texts that a scene is read from: its own, those of the files that it includes, and the options that set values.
-//! They stand one after the other in one text, so that a place is a range of it.
+//! The texts of a scene: its own, those of included files, and the options that set values. All are joined to one text,
+//! so that a place is a range of it.
 
 use super::encoding;
 use super::fault::Fault;
@@ -24,27 +24,27 @@ use toml::de::{DeTable, DeValue};
 /// The maximum length of all texts together, in bytes.
 const LARGEST: u64 = 1 << 30;
 
-/// The maximum number of files that a scene includes, and how deep they may include each other.
+/// The maximum number of files that a scene includes, and their maximum nesting.
 const MOST_FILES: usize = 1000;
 const DEEPEST: usize = 16;
 
-/// The texts that a scene is read from.
+/// The texts of a scene.
 pub struct Sources<'t> {
     /// All texts.
     pub text: Cow<'t, str>,
-    /// The parts of the text; empty if it is one.
+    /// The parts of the text, or none for a single one.
     pub parts: Vec<TextPart>,
-    /// The part that each `include` includes, or why it cannot be included, by the place at which the file is named.
+    /// The part for each `include`, or the reason why the file cannot be included, by the place of the file's name.
     includes: HashMap<usize, Result<usize, Fault>>,
     /// The range of the scene's own text.
     pub own: Range<usize>,
     /// The range of the options that set values.
     options: Option<Range<usize>>,
-    /// The files that are included, whether they exist or not.
+    /// The included files, whether they exist or not.
     pub files: Vec<PathBuf>,
 }
 
-/// A file that is read: its path, its folder, and the index of the one that includes it.
+/// An open file: its path, and the index of the file that includes it.
 struct OpenSource {
     path: PathBuf,
     includer: Option<usize>,
@@ -125,8 +125,8 @@ impl<'t> Sources<'t> {
         report
     }
 
-    /// Returns the range of the file that an `include` names, or reports why there is none; `stands` is where an `include`
-    /// can stand.
+    /// Returns the range of the file that an `include` names, or reports the reason why there is none. `stands`
+    /// describes where an `include` is allowed.
     pub fn file(&self, file: &Word<'_>, stands: &str, report: &mut Report<'_>) -> Option<Range<usize>> {
         let place = file.place.as_ref().map_or(0, |place| place.start);
         match self.includes.get(&place) {
@@ -140,7 +140,7 @@ impl<'t> Sources<'t> {
         None
     }
 
-    /// Returns the values that the options set.
+    /// Returns the values set by the options.
     pub fn sets(&self, report: &mut Report<'_>) -> Sets<'_> {
         let options = self.options.as_ref();
         options.map_or_else(Sets::default, |options| Sets::of(&self.text, options.clone(), report))
@@ -156,7 +156,7 @@ impl<'t> Sources<'t> {
         range
     }
 
-    /// Reads a file and returns the index of its part, or what is wrong and what would be right.
+    /// Reads a file and returns the index of its part, or an error and its correction.
     fn include(
         &mut self,
         readings: &mut Vec<OpenSource>,
@@ -196,7 +196,7 @@ impl<'t> Sources<'t> {
     }
 }
 
-/// What is wrong with a file that is included, and what would be right.
+/// An error of an included file, and its correction.
 type Refused = (String, Option<String>);
 
 /// Checks that a file does not include itself, directly or through others, and that there are not too many files.
@@ -223,7 +223,7 @@ fn may_include(readings: &[OpenSource], includer: usize, file: &str, path: &Path
     Ok(())
 }
 
-/// Reads a file, or takes its text as an editor has it. One byte more than there is room for is enough to refuse it.
+/// Reads a file, or takes its text from an editor. One byte more than the limit is enough to refuse it.
 fn read(file: &str, path: &Path, open: &[(PathBuf, Arc<str>)], room: u64) -> Result<Vec<u8>, Refused> {
     let plain = files::plain(path);
     if let Some((_, text)) = open.iter().find(|(known, _)| *known == plain) {
@@ -241,7 +241,7 @@ fn read(file: &str, path: &Path, open: &[(PathBuf, Arc<str>)], room: u64) -> Res
     Err((format!("cannot read `{file}`: {}", text::reason(&error)), Some(help)))
 }
 
-/// Returns the files that a part of a text includes, each with the place at which it is named.
+/// Returns the files that a part of a text includes, each with the place of its name.
 fn included(syntax: Syntax, text: &str, part: Range<usize>) -> Vec<(Range<usize>, String)> {
     if !text[part.clone()].contains("include") {
         return Vec::new();

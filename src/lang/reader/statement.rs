@@ -1,10 +1,10 @@
-//! What a scene in TOML says, statement by statement.
+//! The statements of a scene in TOML.
 
 use super::fault::Place;
 use super::parsed::{Parsed, Word};
 use std::ops::Range;
 
-/// What a scene in TOML says.
+/// A statement of a scene in TOML.
 pub enum Statement<'a> {
     Entity(Parsed<'a>),
     Let { name: Word<'a>, value: Word<'a> },
@@ -13,7 +13,7 @@ pub enum Statement<'a> {
 }
 
 impl Statement<'_> {
-    /// Returns the position at which it begins, in bytes.
+    /// Returns the beginning of the statement, in bytes.
     pub fn start(&self) -> Option<usize> {
         let place = match self {
             Self::Entity(entity) => &entity.name.place,
@@ -32,7 +32,7 @@ impl Statement<'_> {
         }
     }
 
-    /// Returns the length of its text, in bytes, without empty space between its parts.
+    /// Returns the length of the statement's text, in bytes, without space between its parts.
     pub fn len(&self) -> usize {
         match self {
             Self::Entity(entity) => entity.place.as_ref().map_or(0, Range::len),

@@ -1,4 +1,4 @@
-//! Reads a scene in the notes' syntax: entities, and what `let`, `repeat` and `include` say beside them.
+//! Reads a scene in the notes' syntax: entities, `let`, `repeat` and `include`.
 
 use super::fault::{Fault, Severity};
 use super::keyword::Keyword;
@@ -21,7 +21,7 @@ pub fn parse<'a>(registry: &Registry, sources: &'a Sources<'_>, report: &mut Rep
     }
 }
 
-/// Begins to parse the entities of a text. Returns `None`, and reports why, if no part of it is an entity.
+/// Begins parsing the entities of a text. If the text has no entity, reports the reason and returns `None`.
 pub fn parser<'a, 'r>(
     registry: &'r Registry,
     sources: &'a Sources<'_>,
@@ -53,25 +53,25 @@ pub fn parser<'a, 'r>(
 pub struct Parser<'a, 'r> {
     grammar: Grammar<'a, 'r>,
     sources: &'a Sources<'a>,
-    /// What the scene repeats, and its numbers.
+    /// The rounds of the scene, and its numbers.
     pub rounds: Rounds<'a>,
     /// The rests of the texts that include this one.
     outer: Vec<Tokens<'a>>,
     /// Whether everything has been read.
     is_over: bool,
-    /// Whether a syntax error is a reason to stop.
+    /// Whether to stop at a syntax error.
     stops: bool,
 }
 
 impl<'a> Parser<'a, '_> {
-    /// Goes on after a syntax error.
+    /// Makes the parser continue after a syntax error.
     pub fn reading_on(mut self) -> Self {
         self.stops = false;
         self
     }
 
-    /// Parses the next entities, in the memory of others, until there are as many as asked for or no more. They end at
-    /// a syntax error, unless parsing continues to find further faults in one run.
+    /// Parses the next entities, in the memory of others, until all slots are filled or the text ends. They end at a
+    /// syntax error, unless parsing continues to find further errors in one run.
     pub fn entities(&mut self, parsed: &mut [Option<Parsed<'a>>]) -> usize {
         let mut count = 0;
         while count < parsed.len()
@@ -105,7 +105,7 @@ impl<'a> Parser<'a, '_> {
         count
     }
 
-    /// Does what a keyword says.
+    /// Executes a statement.
     fn statement(&mut self, statement: Statement<'a>) {
         match (statement.keyword, statement.words, statement.open) {
             (Keyword::Include, [Some(file), _], _) => self.include(&file),
@@ -113,12 +113,12 @@ impl<'a> Parser<'a, '_> {
                 self.rounds.define(&name, &value, self.grammar.report);
             }
             (Keyword::Repeat, [Some(name), Some(count)], Some(open)) => self.repeat(&name, &count, open),
-            // What is incomplete is reported.
+            // Incomplete statements have been reported.
             _ => {}
         }
     }
 
-    /// Goes on with the file that an `include` names.
+    /// Continues with the file that an `include` names.
     fn include(&mut self, file: &Word<'a>) {
         let grammar = &mut self.grammar;
         if let Some(range) = self.sources.file(file, "outside of all braces", grammar.report) {
@@ -127,7 +127,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Goes on after the end of an included file; returns whether there is more to read.
+    /// Continues after the end of an included file. Returns whether there is more to read.
     fn leave(&mut self) -> bool {
         while self.rounds.is_open() {
             self.grammar.report.add(
@@ -148,7 +148,7 @@ impl<'a> Parser<'a, '_> {
         false
     }
 
-    /// Begins to repeat the entities after a brace.
+    /// Begins a `repeat` with the entities after a brace.
     fn repeat(&mut self, name: &Word<'a>, count: &Word<'a>, open: Token) {
         let grammar = &mut self.grammar;
         let (entities, close) = body(grammar.tokens.text, open.end);
@@ -159,7 +159,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Begins the next round of a `repeat` after the brace that ends its body, or goes on after the brace.
+    /// Begins the next round of a `repeat` after the closing brace of its body, or continues after the brace.
     fn end_of_round(&mut self, close: Token) {
         let grammar = &mut self.grammar;
         let errors = grammar.report.count(Severity::Error);
@@ -169,7 +169,7 @@ impl<'a> Parser<'a, '_> {
     }
 }
 
-/// Returns the names of the entities of a `repeat`, without those of others in it, and the position after its closing
+/// Returns the names of the entities of a `repeat`, except those of nested ones, and the position after its closing
 /// brace, in bytes.
 pub fn body(text: &str, start: usize) -> (HashSet<String>, usize) {
     let nowhere = &mut Report::default();
@@ -189,7 +189,7 @@ pub fn body(text: &str, start: usize) -> (HashSet<String>, usize) {
             _ => {}
         }
         let is_repeat = token.form == TokenForm::Word && tokens.raw(token) == "repeat";
-        // A `repeat` has two words before its brace. Neither is the name of an entity.
+        // A `repeat` has two words before its brace, and neither is the name of an entity.
         before = match (token.is_brace(), before) {
             (true, _) => [None; 2],
             (false, _) if is_repeat && depth == 0 => [None; 2],

@@ -8,7 +8,7 @@ use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
 
 impl Check<'_, '_> {
-    /// Reads the textures that some entity refers to, and no others.
+    /// Reads only the textures that entities refer to.
     pub fn textures_can_be_read(&mut self, store: &Store, source: &Source<'_, '_>) {
         if self.textures.is_empty() {
             return;

@@ -1,4 +1,5 @@
-//! The tokens of a scene in the notes' syntax: words, braces, and what is between them. Every byte is in one of them.
+//! The tokens of a scene in the notes' syntax: words, braces, white space and comments. Each byte belongs to one of
+//! them.
 
 use super::fault::Fault;
 use super::parsed::{Form, Word};
@@ -20,7 +21,7 @@ pub enum TokenForm {
     Word,
     /// A word in quotes.
     Quoted,
-    /// A word after a quote that is never closed.
+    /// A word after an unclosed quote.
     Unclosed,
     Open,
     Close,
@@ -31,8 +32,8 @@ pub enum TokenForm {
 }
 
 impl Token {
-    /// Reads the token that begins at a byte of a text. A `#` at the beginning of a word begins a comment, and a `"` a word
-    /// in quotes.
+    /// Reads the token at a byte of a text. At the beginning of a word, a `#` begins a comment, and a `"` a quoted
+    /// word.
     #[inline]
     pub fn at(text: &str, start: usize, report: &mut Report<'_>) -> Option<Self> {
         let bytes = text.as_bytes();
@@ -55,7 +56,7 @@ impl Token {
         Some(Self { form, start, end })
     }
 
-    /// Tells whether it only separates others.
+    /// Tells whether the token only separates others.
     #[inline]
     pub fn is_trivia(self) -> bool {
         matches!(self.form, TokenForm::Space | TokenForm::Comment)
@@ -77,15 +78,15 @@ impl Token {
     }
 }
 
-/// What a byte is, or may be the beginning of.
+/// The class of a byte.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Class {
     Letter,
-    /// A letter of a word that begins something else where it is the first.
+    /// A letter that begins something else at the beginning of a word.
     Mark,
     Space,
     Brace,
-    /// Part of a character of several bytes, which may be white space.
+    /// A part of a multibyte character, which may be white space.
     Wide,
 }
 
@@ -106,8 +107,8 @@ const CLASSES: [Class; 256] = {
     classes
 };
 
-/// Marks the highest bit of the first of eight bytes that is not certainly a letter of a word, and perhaps those of later
-/// ones: white space, braces, and a few others.
+/// Marks the highest bit of the first of eight bytes that may not be a letter of a word, and possibly those of later
+/// ones. Marked are white space, braces, and a few others.
 #[inline(always)]
 fn perhaps_others(eight: u64) -> u64 {
     const ONES: u64 = u64::MAX / 255;
@@ -115,7 +116,7 @@ fn perhaps_others(eight: u64) -> u64 {
     (low | high | eight) & (0x80 * ONES)
 }
 
-/// Returns the end of the word that begins at a byte of a text: the beginning of white space or a brace.
+/// Returns the end of the word at a byte of a text, which is the beginning of white space or a brace.
 #[inline]
 fn word_end(text: &str, mut at: usize) -> usize {
     let bytes = text.as_bytes();
@@ -156,7 +157,7 @@ fn space_end(text: &str, mut at: usize) -> usize {
     at
 }
 
-/// Returns the end of the white space at a byte of a text, as far as each is of one byte.
+/// Returns the end of the single-byte white space at a byte of a text.
 #[inline]
 pub fn after_space(text: &str, mut at: usize) -> usize {
     let is_space = |byte: &u8| CLASSES[usize::from(*byte)] == Class::Space;
@@ -166,7 +167,7 @@ pub fn after_space(text: &str, mut at: usize) -> usize {
     at
 }
 
-/// Returns the end of the word that begins at a byte of a text, if there begins one, and its first letter is of one byte.
+/// Returns the end of the word at a byte of a text, if there is one with a single-byte first letter.
 #[inline]
 pub fn plain_word(text: &str, at: usize) -> Option<usize> {
     let first = CLASSES[usize::from(*text.as_bytes().get(at)?)];
@@ -193,7 +194,7 @@ impl<'a> Tokens<'a> {
         tokens
     }
 
-    /// Advances by one token and returns it.
+    /// Advances by one token, and returns the token.
     pub fn step(&mut self, report: &mut Report<'_>) -> Option<Token> {
         let next = self.read(report);
         let [first, second, third] = self.ahead;
@@ -218,7 +219,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Returns the word that a token stands for.
+    /// Returns the word of a token, without quotes and escapes.
     #[inline]
     pub fn text(&self, token: Token) -> Cow<'a, str> {
         match token.form {
@@ -228,7 +229,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Returns the text of a token, with its quotes if it has any.
+    /// Returns the text of a token, including quotes.
     #[inline]
     pub fn raw(&self, token: Token) -> &'a str {
         &self.text[token.start..token.end]
@@ -240,8 +241,8 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// Finds the end of the quoted word that a text begins with; returns whether it has one, and the length of the word in
-/// bytes, quotes included.
+/// Finds the end of the quoted word at the beginning of a text. Returns whether it has one, and the length of the word
+/// in bytes, including the quotes.
 fn quoted(text: &str, at: usize, report: &mut Report<'_>) -> (bool, usize) {
     let mut letters = text.char_indices().skip(1);
     while let Some((index, letter)) = letters.next().filter(|(_, letter)| *letter != '\n') {
@@ -269,13 +270,13 @@ fn quoted(text: &str, at: usize, report: &mut Report<'_>) -> (bool, usize) {
     (false, unclosed(text))
 }
 
-/// Returns the length of the line break that a text begins with, and of the `\` before it; 0 if it begins with none.
+/// Returns the length of the line break at the beginning of a text, with the `\` before it, or 0 if there is none.
 fn continued(text: &str) -> usize {
     ["\\\n", "\\\r\n"].into_iter().find(|end| text.starts_with(end)).map_or(0, str::len)
 }
 
-/// Returns the length of what was probably meant to be in quotes, in a text that begins with a quote which is not closed
-/// on its line: up to a later quote that closes; without one, the line, unless a brace is in it; and otherwise a word.
+/// Returns the probable length of a word with an opening quote but no closing one on its line: up to a later closing
+/// quote, or else the line, unless it has a brace, or else one word.
 fn unclosed(text: &str) -> usize {
     let line = text.find('\n').unwrap_or(text.len());
     if let Some(length) = text[line..].find(['"', '{', '}', '#'])
@@ -288,8 +289,8 @@ fn unclosed(text: &str) -> usize {
     if line.contains(['{', '}', '#']) { word_end(text, 1) } else { line.len() }
 }
 
-/// Returns what is written between quotes: `\\` and `\"` stand for a backslash and for a quote, and other escape sequences
-/// for nothing. For a `\` at the end of a line there are as many spaces as bytes, so that what follows keeps its place.
+/// Returns the text of a quoted word: `\\` and `\"` stand for a backslash and a quote, and other escape sequences are
+/// dropped. A `\` at the end of a line gives as many spaces as bytes, so that the following text keeps its place.
 pub fn unescaped(text: &str) -> Cow<'_, str> {
     if !text.contains('\\') {
         return Cow::Borrowed(text);

@@ -1,4 +1,4 @@
-//! Parses scenes in TOML: long ones in parts at the same time, and those with syntax errors in pieces.
+//! Parses scenes in TOML: long ones in parallel parts, and those with syntax errors in pieces.
 
 use super::fault::{Fault, Place, Severity};
 use super::report::Report;
@@ -14,8 +14,8 @@ use std::sync::OnceLock;
 use tabray_core::parallel;
 use toml::de::DeTable;
 
-/// Parses the part of a text that begins at `start` and ends with it, and reports syntax errors. Parsing goes on after
-/// an error, so that one run finds the faults that follow.
+/// Parses a text from `start` to its end, and reports syntax errors. Parsing continues after an error, so that one run
+/// finds further errors.
 pub fn parse<'a>(
     registry: &Registry,
     text: &'a str,
@@ -51,7 +51,7 @@ pub fn parse<'a>(
             return parsed;
         }
     }
-    // After a bracket that is never closed, nothing can be parsed. Parsing starts again at the next title.
+    // After an unclosed bracket, nothing can be parsed. Parsing starts again at the next title.
     for piece in pieces(text) {
         if report.has_enough() {
             break;
@@ -65,11 +65,11 @@ pub fn parse<'a>(
     parsed
 }
 
-/// What has become of parsing a text in parts.
+/// The result of parsing a text in parts.
 enum Outcome<'a> {
-    /// What the text says: it has no faults of form, and its parts do not depend on each other.
+    /// The statements of a text without syntax errors and with independent parts.
     Statements(Vec<Statement<'a>>),
-    /// The text is to be parsed as one: it is short, or its parts may depend on each other.
+    /// The text must be parsed as a whole: it is short, or its parts may depend on each other.
     OfOne,
     /// A part has syntax errors.
     Broken,
@@ -105,22 +105,21 @@ fn in_parts(text: &str, start: usize) -> Outcome<'_> {
     }
 }
 
-/// The parts of a long text that can be parsed one after the other.
+/// The parts of a long text that can be parsed independently.
 pub struct IndependentParts {
-    /// Their ranges of the text, in bytes.
+    /// The ranges of the parts in the text, in bytes.
     pub ranges: Vec<Range<usize>>,
-    /// The numbers that they define, with their places.
+    /// The numbers that the parts define, with their places.
     pub numbers: HashMap<String, Place>,
 }
 
-/// Finds the parts of a text, if it is long, all of them have the form of a scene, and none depends
-/// on another.
+/// Finds the parts of a text, if it is long, and all parts are valid and independent of each other.
 pub fn independent_parts(text: &str) -> Option<IndependentParts> {
     let ranges = if long_line(text).is_none() { parts(text) } else { Vec::new() };
     if ranges.len() <= 1 {
         return None;
     }
-    // Names that have the same hash by chance are taken for the same, which costs memory and nothing else.
+    // Equal hashes count as equal names. A coincidence costs memory, and nothing else.
     let named = |part: usize| {
         let Outcome::Statements(statements) = one(text, ranges[part].clone(), 0) else { return None };
         let numbers: Vec<_> = statements.iter().filter_map(Statement::number).collect();
@@ -150,8 +149,8 @@ pub fn part(text: &str, part: Range<usize>) -> Vec<Statement<'_>> {
     }
 }
 
-/// Returns the type and the name of a statement that other parts may also have. Values by name and `include` stand
-/// before the first title.
+/// Returns the type and the name of a statement that other parts may also have. Named numbers and `include` come before
+/// the first title.
 fn name<'s>(statement: &'s Statement<'_>) -> Option<(&'s str, &'s str)> {
     match statement {
         Statement::Entity(entity) => Some((entity.kind.text.as_ref(), entity.name.text.as_ref())),
@@ -167,8 +166,8 @@ fn one(text: &str, part: Range<usize>, start: usize) -> Outcome<'_> {
     if !errors.iter().all(is_duplicate) {
         return Outcome::Broken;
     }
-    // A part goes on where the one before ends, unless it begins with a title. And other parts may have the same title
-    // of one word.
+    // A part continues the one before, unless it begins with a title. Titles of one word may be repeated in other
+    // parts.
     let has_own_title = at == 0 || text.lines().next().is_some_and(is_title);
     let is_whole = |line: &str| !line.trim_start().starts_with('[') || is_title(line);
     if !errors.is_empty() || !has_own_title || !text.lines().all(is_whole) {
@@ -200,7 +199,7 @@ fn depend_on_each_other(parts: &[Vec<Statement<'_>>]) -> bool {
 mod tests {
     use super::*;
 
-    /// Returns a scene of some 2,000 spheres, in several parts, between a beginning and an end.
+    /// Returns a scene of about 2,500 spheres, in several parts, between a beginning and an end.
     fn long(first: &str, last: &str) -> String {
         let ball = |index| {
             format!("[sphere.ball_{index}] # a title\ncenter = [{index}, 0.5, -4]\n# radius\nradius = 2\n\n")
@@ -251,14 +250,14 @@ mod tests {
     #[test]
     fn parts_that_depend_on_each_other_are_parsed_as_one() {
         for (first, last) in [
-            // Several of one name, and duplicates of various forms.
+            // Several entities share a name, and there are duplicates of various forms.
             ("[[light.lamp]]\nlocation = [0, 1, 2]", "[[light.lamp]]\nlocation = [0, 1, 3]"),
             ("[sphere.one]\nradius = 1", "[sphere.one]\nradius = 1"),
             ("sphere.one.radius = 1", "[sphere.one]\nradius = 1"),
             ("[sphere]\none = { radius = 1 }", "[sphere]\ntwo = { radius = 1 }"),
             ("let.height = 1", "[let]\nwidth = 1"),
             ("[repeat.i]\ncount = 3", "[repeat.i.sphere.again]\nradius = 1"),
-            // A fault that is found while a part is read.
+            // Reading these parts finds an error.
             ("heart = 1", ""),
             ("", "[sphere.x]\nradius = 1979-05-27"),
         ] {

@@ -1,4 +1,4 @@
-//! Reads what stands in a document in TOML: `[entity-type.name]` tables of attributes.
+//! Reads the contents of a TOML document: `[entity-type.name]` tables of attributes.
 
 use super::fault::Fault;
 use super::keyword::Keyword;
@@ -12,13 +12,13 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-/// Reads a document that `toml` has parsed.
+/// Reads a document parsed by `toml`.
 pub struct Reader<'a, 'r, 't> {
     /// The text, or a piece of it.
     text: &'a str,
-    /// The position at which the piece begins, in bytes.
+    /// The position of the piece in the text, in bytes.
     at: usize,
-    /// The syntax errors of the piece, and which of them need not be reported any more.
+    /// The syntax errors of the piece, and whether each is still to be reported.
     errors: Vec<SyntaxError>,
     is_told: Vec<bool>,
     titles: Vec<usize>,
@@ -26,12 +26,12 @@ pub struct Reader<'a, 'r, 't> {
     parsed: &'r mut Vec<Statement<'a>>,
 }
 
-/// A key with its place, and a value with its place.
+/// A key or a value, with its place.
 type Key<'a> = Spanned<toml::de::DeString<'a>>;
 type Value<'a> = Spanned<DeValue<'a>>;
 
 impl<'a, 'r, 't> Reader<'a, 'r, 't> {
-    /// Prepares to read what was parsed, with these errors, from a piece of a text that begins at `at`.
+    /// Prepares to read a piece of a text that begins at `at` and was parsed with these errors.
     pub fn new(
         (text, at): (&'a str, usize),
         errors: &[Error],
@@ -43,7 +43,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         Self { text, at, is_told: vec![true; errors.len()], errors, titles, report, parsed }
     }
 
-    /// Reads what was parsed from the piece, and reports its errors.
+    /// Reads the parsed piece, and reports its errors.
     pub fn read(&mut self, document: Spanned<DeTable<'a>>) {
         for (kind, value) in document.into_inner() {
             self.kind(&kind, value);
@@ -55,7 +55,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         }
     }
 
-    /// Reports a fault whose place is relative to this piece.
+    /// Reports a fault with a place relative to this piece.
     fn fault(&mut self, mut fault: Fault) {
         fault.place = fault.place.map(|place| self.placed(place));
         self.report.add(fault);
@@ -160,7 +160,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         }
     }
 
-    /// Reads what a `repeat` repeats, and how often.
+    /// Reads the body and the count of a `repeat`.
     fn repeat(
         &mut self,
         name: &Key<'a>,
@@ -185,7 +185,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
                 let name = self.word(name.get_ref().clone(), Form::Text, name.span());
                 self.parsed.push(Statement::Repeat { start, name, count, body: inner });
             }
-            // Where something could not be parsed, the number may be there.
+            // If something could not be parsed, the number may be there.
             None if self.errors.is_empty() => self.fault(wrong(name.span())),
             None => {}
         }
@@ -208,11 +208,11 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         self.fault(Fault::error(Some(at.span()), what).help(help));
     }
 
-    /// Reads an entity; `span` is its title, or all of it where it stands on one line.
+    /// Reads an entity. `span` is its title, or all of a single-line entity.
     fn entity(&mut self, kind: &Key<'a>, name: &Key<'a>, span: Range<usize>, attributes: DeTable<'a>) {
         let title = if self.text[span.clone()].starts_with('[') { span.clone() } else { 0..0 };
         let place_of = |key: &Key<'a>| {
-            // A key knows only the first title in which it stands.
+            // A key only knows the first title that contains it.
             let source = self.text.get(key.span()).unwrap_or_default();
             let found = self.text[title.clone()].rfind(source).map(|at| title.start + at);
             found.map_or(key.span(), |start| start..start + source.len())
@@ -228,7 +228,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         let mut end = name_at.end.max(span.end);
         for (key, value) in attributes {
             end = end.max(value.span().end);
-            // The stand-in for a missing value has a place before its key; the error comes after the key.
+            // The stand-in for a missing value has a place before its key, but the error is after the key.
             let is_before = value.span().start < key.span().end;
             let value_end = if is_before { self.line_end(key.span().end) } else { value.span().end };
             if self.is_faulty(key.span().start..value_end) {
@@ -245,14 +245,14 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
             }
         }
         entity.place = Some(self.placed(start..end));
-        // What could not be parsed at all stands between the last attribute and the next title.
+        // Unparsed text lies between the last attribute and the next title.
         let next = next(&self.titles, end).unwrap_or(self.text.len());
         entity.is_damaged |= self.is_faulty(name_at.start..next);
         entity.shrink();
         self.parsed.push(Statement::Entity(entity));
     }
 
-    /// Returns the errors that begin in a span, its end included.
+    /// Returns the errors that begin in a span, including its end.
     fn errors_in(&self, span: Range<usize>) -> Range<usize> {
         let first = self.errors.partition_point(|(place, _)| place.start < span.start);
         first..self.errors.partition_point(|(place, _)| place.start <= span.end).max(first)
@@ -266,7 +266,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         self.errors_in(span).any(|error| self.is_told[error])
     }
 
-    /// Drops all but the first error of a broken value: the others follow from it.
+    /// Drops all errors of a broken value except the first, because the others follow from it.
     fn only_the_first_error_of(&mut self, span: Range<usize>) {
         let mut is_first = true;
         for error in self.errors_in(span) {
@@ -276,7 +276,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         }
     }
 
-    /// Returns a number without memory of its own, where the text has it as it is.
+    /// Returns a number without allocating memory, if it is in the text unchanged.
     fn as_written(&self, number: &str, place: &Range<usize>) -> Cow<'a, str> {
         let text: &'a str = self.text;
         match text.get(place.clone()) {
@@ -285,7 +285,7 @@ impl<'a, 'r, 't> Reader<'a, 'r, 't> {
         }
     }
 
-    /// Reads the values of an attribute; returns whether they have the form of values.
+    /// Reads the values of an attribute. Returns whether they have the form of values.
     fn values(&mut self, value: &Value<'a>, entity: &mut Parsed<'a>) -> bool {
         let place = value.span();
         match value.get_ref() {

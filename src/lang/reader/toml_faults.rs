@@ -1,13 +1,12 @@
-//! The syntax errors of a scene in TOML, and the pieces in which one that has some is parsed.
+//! The syntax errors of a scene in TOML, and the pieces for parsing a scene that has some.
 
 use super::fault::Fault;
 use std::iter;
 use std::ops::Range;
 use toml::de::Error;
 
-/// The maximum length of a line, and of the part of a text that is parsed at once before the whole text is known to be
-/// free of syntax errors, in bytes. For each token and each error, the parser keeps many times as much memory as it
-/// takes in the text.
+/// The maximum length of a line, and of a part of a text that is parsed at once before the whole text is known to be
+/// valid, in bytes. For each token and each error, the parser uses many times the memory of its text.
 pub const LINE: usize = 1 << 16;
 const PART: usize = 1 << 17;
 
@@ -20,16 +19,16 @@ pub fn is_duplicate(error: &Error) -> bool {
 
 const DUPLICATE: &str = "duplicate key";
 
-/// Returns the ends of the lines that are followed by a line beginning with a bracket.
+/// Returns the ends of the lines before a line that begins with a bracket.
 pub fn before_titles(text: &str) -> Vec<usize> {
     text.match_indices("\n[").map(|(at, _)| at).collect()
 }
 
-/// Returns the first syntax error of each line, in order: later errors on a line mostly follow from the first.
+/// Returns the first syntax error of each line, in order. Later errors on a line mostly follow from the first.
 pub fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError> {
     let place = |error: &Error| {
         let place = error.span().unwrap_or(text.len()..text.len());
-        // The range of a token missing between two others may end before it begins.
+        // The range of a missing token between two others may end before it begins.
         place.start.min(place.end)..place.start.max(place.end)
     };
     let mut places: Vec<_> = errors.iter().map(|error| (place(error), error.message().to_owned())).collect();
@@ -37,7 +36,7 @@ pub fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError
     let mut end = 0;
     let mut second_title = 0..0;
     places.retain(|(place, message)| {
-        // Duplicates below a repeated title follow from the title, so they are not reported.
+        // Duplicates below a repeated title follow from the title, and are not reported.
         if message == DUPLICATE {
             let line = text[..place.start].rfind('\n').map_or(0, |end| end + 1);
             if text[line..].starts_with('[') {
@@ -56,12 +55,12 @@ pub fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError
     places
 }
 
-/// Returns the first of these sorted positions that is not before `from`.
+/// Returns the first of these sorted positions from `from` on.
 pub fn next(places: &[usize], from: usize) -> Option<usize> {
     places.get(places.partition_point(|place| *place < from)).copied()
 }
 
-/// Makes a fault of a syntax error.
+/// Converts a syntax error to a fault.
 pub fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
     let before = &text[..place.start];
     let begins_line = before.rfind('\n').is_some_and(|end| before[end..].trim().is_empty());
@@ -121,7 +120,7 @@ pub fn parts(text: &str) -> Vec<Range<usize>> {
     parts
 }
 
-/// Splits a text: before each line that is a title, and before other lines where no title comes for a long time.
+/// Splits a text before each title, and before other lines if there is no title for a long time.
 pub fn pieces(text: &str) -> Vec<Range<usize>> {
     let mut starts = vec![0];
     let mut at = 0;

@@ -1,4 +1,4 @@
-//! Warns of images that are black for certain, or show no plane, with the reason.
+//! Warnings about images that are certainly black, or show no plane, with the reason.
 
 use super::fault::Fault;
 use glam::{DVec2, DVec3};
@@ -7,10 +7,10 @@ use tabray_core::scene::model::{Model, Object};
 use tabray_core::text::shortest;
 use tabray_core::world::material::Rgb;
 
-/// How much wider than it is the image is taken to be, as a fraction of it.
+/// The margin by which the image is enlarged, as a fraction of it.
 const MARGIN: f64 = 0.01;
 
-/// Returns a warning if nothing in a scene can be seen, or no plane.
+/// Returns a warning if nothing in a scene is visible, or no plane.
 pub fn warning(model: &Model) -> Option<Fault> {
     if model.background.is_some() {
         return None;
@@ -28,7 +28,7 @@ pub fn warning(model: &Model) -> Option<Fault> {
             "add a light, or give the materials `ambient`, a colour that needs no light".to_owned(),
         );
     }
-    // Of rays that start at different points, nothing is said.
+    // Rays with different origins are not judged.
     let corners = camera.camera.corners(camera.pixels, MARGIN)?;
     let (viewer, screen) = (camera.origins().middle, camera.camera.screen());
     let ahead: DVec3 = corners.iter().sum();
@@ -52,7 +52,7 @@ pub fn warning(model: &Model) -> Option<Fault> {
         let how = screen.map_or_else(|| "past them".to_owned(), through);
         return black("all objects are outside the image", looks(how));
     }
-    // Planes end before such a viewer's image plane.
+    // For such a viewer, planes end before the image plane.
     let is_endless = |object: &Object| object.shape.facts().bounds.is_none();
     let ends =
         camera.camera.planes_end_at().filter(|_| viewer.z < 0.0 && model.objects.iter().any(is_endless))?;
@@ -66,18 +66,17 @@ pub fn warning(model: &Model) -> Option<Fault> {
     )
 }
 
-/// Tells whether an object is black where no light is.
+/// Tells whether an object is black without light.
 fn is_dark(object: &Object) -> bool {
     object.shader.brightest(&object.material).is_some_and(|look| look.ambient == Rgb::ZERO)
 }
 
-/// Tells whether all objects have bounds for which a condition holds. The search ends at the first object for which it
-/// does not hold.
+/// Tells whether all objects have bounds that meet a condition. The search ends at the first object that does not.
 fn all_are(model: &Model, is_so: impl Fn(&Aabb) -> bool) -> bool {
     model.objects.iter().all(|object| object.shape.facts().bounds.is_some_and(|bounds| is_so(&bounds)))
 }
 
-/// Tells whether all of a box lies behind the plane through a point with this normal.
+/// Tells whether a whole box lies behind the plane through a point with this normal.
 fn is_behind(viewer: DVec3, normal: DVec3, bounds: &Aabb) -> bool {
     let nearest = DVec3::select(normal.cmpgt(DVec3::ZERO), bounds.high, bounds.low);
     normal.dot(nearest - viewer) < 0.0

@@ -13,7 +13,7 @@ use tabray_exact::formula::Formula;
 /// Reads words as values of a type.
 ///
 /// # Errors
-/// Returns a fault for each word that is not a value of the type.
+/// Returns an error for each word that is not a value of the type.
 pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
     match value_type {
         Type::Whole => all(words, whole).map(Datum::Whole),
@@ -68,7 +68,7 @@ fn formula(word: &Word<'_>, variables: &'static [&'static str]) -> Result<Arc<Fo
 }
 
 fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
-    // A word in quotes is not a number.
+    // A quoted word is not a number.
     let number = word.text.parse().ok().filter(|_| word.form != Form::Text);
     let chosen = number.and_then(|number| choices.numbered(number)).or_else(|| choices.named(&word.text));
     chosen.map(Datum::Choice).ok_or_else(|| {
@@ -82,7 +82,7 @@ fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     })
 }
 
-/// What is wrong with a word, and what would be right where that can be said.
+/// The error of a word, and its correction, if known.
 pub type ValueError = (&'static str, Option<Cow<'static, str>>);
 
 fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Result<Vec<T>, Vec<Fault>> {
@@ -104,7 +104,7 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, ValueError>) -> Result
     if faults.is_empty() { Ok(values) } else { Err(one_for_all(faults)) }
 }
 
-/// Returns one fault instead of several, if the words have the same fault.
+/// Merges several errors into one, if they are alike.
 fn one_for_all(mut faults: Vec<Fault>) -> Vec<Fault> {
     let [first, .., last] = &faults[..] else { return faults };
     let parts = |fault: &Fault| {
@@ -125,7 +125,7 @@ fn one_for_all(mut faults: Vec<Fault>) -> Vec<Fault> {
     faults
 }
 
-/// Reads a whole number.
+/// Reads an integer.
 pub fn whole(word: &str) -> Result<i64, ValueError> {
     word.parse().map_err(|_| {
         let digits = word.strip_prefix(['+', '-']).unwrap_or(word);
@@ -145,7 +145,7 @@ pub fn number(word: &str) -> Result<f64, ValueError> {
     })
 }
 
-/// Says what to write instead of a word that is not a number.
+/// Returns a suggestion for a word that is not a number.
 fn meant(word: &str) -> Option<Cow<'static, str>> {
     let end = word.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c))).unwrap_or(word.len());
     let (number, unit) = word.split_at(end);

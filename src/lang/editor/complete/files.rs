@@ -1,13 +1,13 @@
-//! The files and folders that a scene can name.
+//! Completions of files and folders that a scene can name.
 
 use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use std::path::Path;
 
-/// The most files of a folder that are proposed.
+/// The maximum number of proposed files of a folder.
 const MOST_FILES: usize = 1000;
 
 impl CompletionContext<'_> {
-    /// Returns the files and folders in the folder that is being named.
+    /// Returns the files and folders in the folder of the path before the position.
     pub(super) fn files(&self) -> Vec<Completion> {
         let text = self.view.text.as_str();
         let start = text[..self.at].rfind(|c: char| c.is_whitespace() || c == '"' || c == '\'' || c == '{');

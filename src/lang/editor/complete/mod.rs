@@ -1,4 +1,4 @@
-//! Completion: what can be written at a position.
+//! Completion: proposals for the text at a position.
 
 mod files;
 mod notes;
@@ -29,7 +29,7 @@ pub fn completions(registry: &Registry, group: &Group, at: usize) -> Vec<Complet
     }
 }
 
-/// Tells whether a position is in a comment: after a `#` that begins a word and is in no quotes.
+/// Tells whether a position is in a comment: after a `#` that begins a word outside of quotes.
 fn in_comment(view: &View, at: usize) -> bool {
     let text = view.text.as_str();
     let line = text[..at].rfind('\n').map_or(0, |end| end + 1);

@@ -1,4 +1,4 @@
-//! What can be written at a position of a text in the notes' syntax.
+//! Completions at a position of a text in the notes' syntax.
 
 use super::proposal::{Completion, CompletionContext};
 use crate::editor::types::{ExpectedValue, expected_value};
@@ -9,7 +9,7 @@ impl CompletionContext<'_> {
     pub(super) fn in_notes(&self) -> Vec<Completion> {
         match self.view.at(self.at) {
             Some(Item::Entity(entity)) if self.is_in(&entity.body) => self.in_entity(entity),
-            // After the type comes a name that nobody knows.
+            // The new name after the type cannot be proposed.
             Some(Item::Entity(entity)) if self.at > entity.kind.end && self.at < entity.body.start => {
                 Vec::new()
             }

@@ -1,4 +1,4 @@
-//! Proposals, and the position at which they are made.
+//! Completion proposals, and the position that they are for.
 
 use crate::editor::names::Namespace;
 use crate::editor::project::Group;
@@ -16,7 +16,7 @@ pub enum CompletionKind {
     Type,
     /// The name of an attribute.
     Attribute,
-    /// One of the values from which an attribute chooses.
+    /// One of the alternatives of an attribute.
     Choice,
     /// The name of an entity or of a number.
     Name,
@@ -32,26 +32,26 @@ pub enum CompletionKind {
     Keyword,
 }
 
-/// A proposal of what to write.
+/// A completion proposal.
 #[derive(Clone, Debug)]
 pub struct Completion {
-    /// The text that is shown, and compared with what was typed.
+    /// The text that is shown, and compared with the typed text.
     pub label: String,
-    /// What it is.
+    /// The kind of the proposal.
     pub kind: CompletionKind,
-    /// A few words beside the label.
+    /// A short description beside the label.
     pub detail: String,
-    /// More about it, in Markdown.
+    /// A longer description, in Markdown.
     pub about: String,
-    /// The text that is inserted: places to fill in are as in `${1:N}`.
+    /// The inserted text. It has placeholders such as `${1:N}`.
     pub snippet: String,
-    /// Whether there are such places.
+    /// Whether the inserted text has placeholders.
     pub has_places: bool,
-    /// The range of the text that it replaces.
+    /// The range of the replaced text.
     pub place: Range<usize>,
 }
 
-/// A position at which something is to be completed, and what surrounds it.
+/// A position to complete, and its context.
 pub(super) struct CompletionContext<'v> {
     pub(super) registry: &'v Registry,
     pub(super) view: &'v View,
@@ -60,7 +60,7 @@ pub(super) struct CompletionContext<'v> {
     pub(super) at: usize,
 }
 
-/// Returns a proposal that is written as it is shown.
+/// Returns a proposal that inserts its label.
 pub(super) fn plain(label: &str, kind: CompletionKind, place: &Range<usize>) -> Completion {
     Completion {
         label: label.to_owned(),
@@ -74,7 +74,7 @@ pub(super) fn plain(label: &str, kind: CompletionKind, place: &Range<usize>) -> 
 }
 
 impl CompletionContext<'_> {
-    /// Returns the range of the word that is being written.
+    /// Returns the range of the word before the position.
     pub(super) fn prefix(&self) -> Range<usize> {
         let is_end = |c: char| {
             let in_toml = self.view.syntax == Syntax::Toml && ".[]=,\"'".contains(c);

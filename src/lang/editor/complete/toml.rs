@@ -1,4 +1,4 @@
-//! What can be written at a position of a text in TOML.
+//! Completions at a position of a text in TOML.
 
 use super::proposal::{Completion, CompletionContext};
 use crate::editor::view::{Attribute, Entity, Item};
@@ -11,7 +11,7 @@ impl CompletionContext<'_> {
         let before = text[line..self.at].trim_start();
         if let Some(title) = before.strip_prefix('[') {
             let title = title.trim_start_matches('[');
-            // `[repeat.i.` is followed by a type, too.
+            // A type may also follow `[repeat.i.`.
             let mut parts: Vec<_> = title.split('.').collect();
             while parts.len() > 2 && Keyword::of(parts[0]) == Some(Keyword::Repeat) {
                 parts.drain(..2);

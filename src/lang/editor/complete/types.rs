@@ -1,4 +1,4 @@
-//! The types of entities, and the words that begin something else.
+//! Completions of entity types, and of keywords.
 
 use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use crate::editor::snippet::Snippet;
@@ -6,7 +6,7 @@ use crate::reader::keyword::Keyword;
 use crate::syntax::Syntax;
 
 impl CompletionContext<'_> {
-    /// Returns the types of entities, and the words that begin something else.
+    /// Returns the types of entities, and the keywords.
     pub(super) fn types(&self, is_outside: bool) -> Vec<Completion> {
         let place = self.prefix();
         let names = |kind| self.names(kind);
@@ -18,7 +18,7 @@ impl CompletionContext<'_> {
             .map(|known| {
                 let mut snippet = Snippet::new(self.view, &names);
                 snippet.entity(known, has_bracket);
-                // Editors often close a bracket by themselves.
+                // Editors often insert the closing bracket.
                 let is_closed = has_bracket && self.view.text.as_str()[self.at..].starts_with(']');
                 let text = if is_closed { known.name.to_owned() } else { snippet.text };
                 Completion {

@@ -1,4 +1,4 @@
-//! The attributes of an entity that are not given yet, and the values of an attribute that is given.
+//! Completions of an entity's missing attributes, and of the values of an attribute.
 
 use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use crate::editor::hover::about;
@@ -55,7 +55,7 @@ impl CompletionContext<'_> {
             place
         };
         let is_quoted = is_quoted || self.at_quote();
-        // A word is written in quotes if they are not there yet.
+        // A word gets quotes if it has none yet.
         let written = |name: &str| match self.view.syntax {
             _ if is_quoted => name.to_owned(),
             syntax => syntax.values(&tabray_core::scene::value::Datum::Word(name.to_owned())).concat(),
@@ -89,7 +89,7 @@ impl CompletionContext<'_> {
         }
     }
 
-    /// Returns the words that a formula can contain.
+    /// Returns the words that are allowed in a formula.
     pub(super) fn in_formula(&self, variables: &[&str]) -> Vec<Completion> {
         let before = &self.view.text.as_str()[..self.at];
         let start = before.rfind(|c: char| !c.is_alphanumeric() && c != '_');

@@ -1,7 +1,7 @@
-//! Scripts of surf 1.0.6: assignments, and commands that draw. What the first `draw_surface` shows is the picture.
+//! Scripts of surf 1.0.6: assignments, and drawing commands. The first `draw_surface` gives the picture.
 //!
-//! A picture shows x and y from -10 to 10 in its shorter side, from a viewer at positive z. A surface is moved by its
-//! origin, turned around y, x and z, in this order, and then made smaller by its scale; a body of the picture's own
+//! A picture shows x and y from -10 to 10 along its shorter side, from a viewer at positive z. A surface is moved by
+//! its origin, rotated around y, x and z, in this order, and then reduced by its scale. A body in the picture's own
 //! coordinates cuts it.
 
 mod script;

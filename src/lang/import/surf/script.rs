@@ -1,4 +1,4 @@
-//! Reads the statements of a script.
+//! The reader of a script's statements.
 
 use crate::import::expression::{self, Dialect, Names, Value};
 use crate::import::notes::Notes;
@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use tabray_exact::formula::is_taken;
 
-/// The numbers of surfaces and of lamps that a script may have.
+/// The numbers of the possible surfaces and lamps of a script.
 pub const SURFACES: Range<usize> = 1..10;
 
-/// The bodies that cut, in the order of their numbers.
+/// The clipping bodies, in the order of their numbers.
 pub const CLIPS: [&str; 8] =
     ["sphere", "tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron", "cylinder", "none"];
 
-/// Words for how surf computes and for what it does with a picture: all words that begin with one of these.
+/// Prefixes of words that control the computation or the use of a picture, and do not affect a scene.
 const LEFT: [&str; 21] = [
     "antialiasing",
     "background_dither",
@@ -39,7 +39,7 @@ const LEFT: [&str; 21] = [
     "tone_scale",
 ];
 
-/// What draws lines beside or on a surface.
+/// Prefixes of words that draw lines beside or on a surface.
 const LINES: [&str; 6] =
     ["curve", "cut_with_plane", "cut_with_surface", "draw_curve", "plane", "cut_distance"];
 
@@ -61,7 +61,7 @@ pub fn without_comments(text: &str) -> String {
         }
         at = end;
     }
-    // Whole comments are replaced, and so whole letters.
+    // Whole comments are replaced, and thus whole characters.
     String::from_utf8(bytes).unwrap_or_default()
 }
 
@@ -69,13 +69,13 @@ pub fn without_comments(text: &str) -> String {
 #[derive(Default)]
 pub struct Scope {
     variables: Vec<(String, Value)>,
-    /// Numbers and functions as the scene names them, with their formulas.
+    /// The numbers and functions of the scene, by their names there, with their formulas.
     pub numbers: Vec<(String, String)>,
     pub functions: Vec<(String, String)>,
 }
 
 impl Scope {
-    /// Returns a name that nothing in the scene has.
+    /// Returns an unused name for the scene.
     fn free(&self, name: &str) -> String {
         let is_free = |name: &str| {
             let known = self.numbers.iter().chain(&self.functions);
@@ -116,15 +116,15 @@ impl Names for Scope {
     }
 }
 
-/// A script, as far as it was read.
+/// A script, and the results of reading it.
 pub struct Script<'t, 'n> {
     /// The text without its comments.
     pub text: &'t str,
     at: usize,
     pub scope: Scope,
-    /// Numbers that are no variables, by their names, and where they are set.
+    /// The settings: numbers other than variables, by their names, and their places.
     pub settings: BTreeMap<String, (f64, Range<usize>)>,
-    /// How often a surface was drawn.
+    /// The number of drawn surfaces.
     parts: usize,
     pub notes: &'n mut Notes,
 }
@@ -145,7 +145,7 @@ impl Script<'_, '_> {
         self.at += rest.len() - rest.trim_start().len();
     }
 
-    /// Returns where the next word stands, and goes to its end.
+    /// Returns the place of the next word, and skips the word.
     fn word(&mut self) -> Range<usize> {
         self.space();
         let rest = &self.text[self.at..];
@@ -205,7 +205,7 @@ impl Script<'_, '_> {
         true
     }
 
-    /// Returns where the statement ends: before its `;`, and outside of texts.
+    /// Returns the end of the statement: its `;`, outside of strings.
     fn end(&self) -> usize {
         let mut is_text = false;
         let found = self.text[self.at..].find(|c| {
@@ -263,7 +263,7 @@ impl Script<'_, '_> {
                 self.settings.insert(name.to_owned(), (number, place));
                 return;
             }
-            // `a = a` is no other number.
+            // `a = a` does not define another number.
             Some(number)
                 if !is_surface && !self.scope.numbers.iter().any(|(known, _)| *known == value.text) =>
             {
@@ -283,7 +283,7 @@ impl Script<'_, '_> {
     }
 }
 
-/// Returns the number of a surface, by its name.
+/// Returns the number of a surface, given its name.
 fn surface_number(name: &str) -> Option<usize> {
     SURFACES
         .into_iter()

@@ -1,4 +1,4 @@
-//! The picture that the settings and the surfaces of a script describe.
+//! The picture described by the settings and the surfaces of a script.
 
 use super::script::{CLIPS, SURFACES, Script};
 use crate::import::expression::{Names, turn};
@@ -6,10 +6,10 @@ use crate::import::picture::{Clip, Light, Look, Picture, Surface};
 use crate::reader::Fault;
 use glam::{DMat3, DVec3};
 
-/// The width of what the shorter side of a picture shows.
+/// The visible extent along the shorter side of a picture.
 const SEEN: f64 = 20.0;
 
-/// The greatest width and height of a picture.
+/// The maximum width and height of a picture.
 const MAX_PIXELS: f64 = 100_000.0;
 
 impl Script<'_, '_> {
@@ -21,7 +21,7 @@ impl Script<'_, '_> {
         DVec3::from([0, 1, 2].map(|at| self.number(&names[at], default[at])))
     }
 
-    /// Returns a colour, from 0 to 1, of which bytes are set.
+    /// Returns a colour with channels from 0 to 1, from settings in bytes.
     fn colour(&self, what: &str, default: [f64; 3]) -> DVec3 {
         self.numbers(["red", "green", "blue"].map(|channel| format!("{what}_{channel}")), default)
             .max(DVec3::ZERO)
@@ -64,7 +64,7 @@ impl Script<'_, '_> {
         clips
     }
 
-    /// Returns the picture, unless it cannot be shown.
+    /// Returns the picture, unless it cannot be converted.
     pub fn picture(mut self) -> Option<Picture> {
         let middle = self.axes("origin", 0.0);
         let scale = self.axes("scale", 1.0);
@@ -83,7 +83,7 @@ impl Script<'_, '_> {
             }
         }
         let lights = SURFACES.filter_map(|index| {
-            // Lights that are not moved stand in three rows of three in front of the picture.
+            // By default, lights are in three rows of three in front of the picture.
             let (column, row) = ((index - 1) % 3, (index - 1) / 3);
             let default = [100.0 * (column as f64 - 1.0), 100.0 * (1.0 - row as f64), 100.0];
             let at = self.numbers(["x", "y", "z"].map(|axis| format!("light{index}_{axis}")), default);
@@ -113,7 +113,7 @@ impl Script<'_, '_> {
             }
         }
         if surfaces.is_empty() {
-            // Faults in formulas come first.
+            // Errors in formulas come first.
             if !self.notes.report.is_fatal() {
                 let fault = Fault::error(
                     Some(0..self.text.lines().next().map_or(0, str::len)),
@@ -137,7 +137,7 @@ impl Script<'_, '_> {
         })
     }
 
-    /// Warns of what would be seen otherwise, and lists what would not.
+    /// Warns of settings that change the picture, and lists those that do not.
     fn say_what_is_left(&mut self) {
         let mut is_told = false;
         for (name, (value, place)) in &self.settings {

@@ -1,13 +1,13 @@
-//! The meanings of the codes in a scene of numbers, and the lines that follow each code.
+//! The meanings of the codes in a scene of numbers, and the lines after each code.
 
-/// What a code stands for.
+/// The meaning of a code.
 pub struct Code {
     pub number: u32,
-    /// What messages call it.
+    /// The name in messages.
     pub name: &'static str,
-    /// The entity type that it becomes.
+    /// The corresponding entity type.
     pub entity: &'static str,
-    /// The lines that follow.
+    /// The lines after the code.
     pub lines: &'static [Line],
 }
 
@@ -25,16 +25,16 @@ pub enum Line {
 /// A line of numbers.
 #[derive(Clone, Copy)]
 pub struct Numbers {
-    /// What messages call it.
+    /// The name in messages.
     pub name: &'static str,
-    /// How many numbers it has.
+    /// The number of numbers.
     pub count: usize,
-    /// The attribute that they become; empty where they become none as they are.
+    /// The corresponding attribute, or an empty string if there is none with the same numbers.
     pub attribute: &'static str,
     pub rule: Rule,
 }
 
-/// What the numbers of a line must be.
+/// The rule for the numbers of a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     /// Any numbers.
@@ -77,7 +77,7 @@ const fn code(number: u32, name: &'static str, entity: &'static str, lines: &'st
     Code { number, name, entity, lines }
 }
 
-/// The codes of which each stands for one thing.
+/// The codes with a single meaning.
 const CODES: [Code; 15] = [
     code(10, "light", "light", &[EMISSIVITY, LOCATION]),
     code(
@@ -123,7 +123,7 @@ const CODES: [Code; 15] = [
     code(25, LENS, "sphere", BALL),
 ];
 
-/// What messages call a lens.
+/// The name of a lens in messages.
 pub const LENS: &str = "lens";
 
 const TORUS: Code = code(
@@ -145,7 +145,7 @@ const TRIANGLE: Code = code(
 );
 const DISC: Code = code(27, "disc", "disc", &[Line::Material, CENTRE, RADIUS, NORMAL]);
 
-/// Codes of the programs' headers that no scene shows the lines of.
+/// Codes of the programs' headers without any scene that shows their lines.
 pub const UNREAD: [(u32, &str); 3] = [
     (
         PROJECTOR,
@@ -155,7 +155,7 @@ pub const UNREAD: [(u32, &str); 3] = [
     (24, "24 stands in the headers of the programs of the time, but no scene shows the lines of its object"),
 ];
 
-/// The code of a projector; of a plane in another numbering.
+/// The code of a projector, or of a plane in another numbering.
 pub const PROJECTOR: u32 = 12;
 
 /// The code of a light.
@@ -165,15 +165,15 @@ pub const LIGHT: u32 = 10;
 pub const TRANSPARENCY: u32 = 9000;
 pub const REFRACTION: u32 = 9001;
 
-/// Tells whether a number is the code of anything.
+/// Tells whether a number is a known code.
 pub fn is_known(number: u32) -> bool {
     number == TRIANGLE.number
         || CODES.iter().any(|code| code.number == number)
         || UNREAD.iter().any(|(unread, _)| *unread == number)
 }
 
-/// Returns what a code stands for. Two of them stand for two things each, told by how many numbers `second` says that the
-/// second line after those of the material has.
+/// Returns the meaning of a code. Two codes have two meanings each. `second` gives the count of numbers on the second
+/// line after those of the material, which decides between the meanings.
 pub fn of(number: u32, second: impl Fn() -> usize) -> Option<&'static Code> {
     match number {
         25 if second() > 1 => Some(&TORUS),
@@ -189,7 +189,7 @@ pub const WORLD: Numbers =
 pub const VIEWPOINT: Numbers =
     Numbers { name: "viewpoint", count: 3, attribute: "viewpoint", rule: Rule::Point };
 
-/// The lines of a material, of which the last two are only there where a scene says so.
+/// The lines of a material. The last two occur only if a scene announces them.
 pub const MATERIAL: [Numbers; 5] = [
     Numbers { name: "ambient colour", count: 3, attribute: "ambient", rule: Rule::Any },
     Numbers { name: "diffuse colour", count: 3, attribute: "diffuse", rule: Rule::Any },
@@ -199,7 +199,8 @@ pub const MATERIAL: [Numbers; 5] = [
 ];
 
 impl Code {
-    /// Says which lines follow the code, given the number of lines of a material, and how many numbers each line has.
+    /// Describes the lines after the code, and the count of numbers on each line. `of_material` is the number of lines
+    /// of a material.
     pub fn usage(&self, of_material: usize) -> String {
         let mut lines = Vec::new();
         for line in self.lines {

@@ -1,4 +1,4 @@
-//! What a scene of numbers says, as entities of the scene language.
+//! The content of a scene of numbers, as entities of the scene language.
 
 use super::codes::{LENS, Numbers, Rule};
 use super::found::{Found, Given};
@@ -12,17 +12,18 @@ use std::ops::Range;
 use std::path::Path;
 use tabray_core::text::shortest;
 
-/// The width of the image, in pixels; the programs of the time were told it by their command line.
+/// The width of the image, in pixels. The programs of the time took it from their command line.
 const WIDTH: f64 = 400.0;
 
-/// The most pixels of a side.
+/// The maximum number of pixels of a side.
 const MOST: f64 = 100_000.0;
 
-/// The entities of a scene, each named after its kind and its number.
+/// The entities of a scene. Each is named after its kind and its number.
 pub struct Entities<'a, 'r> {
     pub statements: Vec<Statement<'a>>,
     folder: &'r Path,
-    /// From the middle of the screen, from which these scenes count, to its lower left corner, from which others do.
+    /// The vector from the lower left corner of the screen, the origin of other scenes, to its middle, the origin of
+    /// these scenes.
     shift: [f64; 2],
     materials: usize,
     objects: usize,
@@ -30,7 +31,7 @@ pub struct Entities<'a, 'r> {
     shaders: usize,
 }
 
-/// An entity that is being written.
+/// An entity in construction.
 struct Draft<'a, 'r, 't> {
     parsed: Parsed<'a>,
     report: &'r mut Report<'t>,
@@ -71,20 +72,20 @@ fn places(values: &[Number]) -> Vec<Range<usize>> {
     values.iter().map(|value| value.place.clone()).collect()
 }
 
-/// Returns the number after the last one of a count, and counts it.
+/// Returns the next number of a counter.
 fn next(count: &mut usize) -> usize {
     *count += 1;
     *count - 1
 }
 
 impl<'a, 'r> Entities<'a, 'r> {
-    /// Begins a scene whose file names are relative to a folder.
+    /// Begins a scene. Its file names are relative to a folder.
     pub fn new(folder: &'r Path) -> Self {
         let statements = Vec::new();
         Self { statements, folder, shift: [0.0; 2], materials: 0, objects: 0, textures: 0, shaders: 0 }
     }
 
-    /// Adds the camera; the other places count from the middle of its screen.
+    /// Adds the camera. Other positions count from the middle of its screen.
     pub fn camera(
         &mut self,
         size: [f64; 2],
@@ -102,19 +103,19 @@ impl<'a, 'r> Entities<'a, 'r> {
         self.statements.push(camera.done(place.end));
     }
 
-    /// Returns a point as other scenes count it.
+    /// Returns a point in the coordinates of other scenes.
     fn shifted(&self, point: &[f64]) -> Vec<f64> {
         let shift = self.shift.iter().chain([&0.0]);
         point.iter().zip(shift).map(|(value, shift)| value + shift).collect()
     }
 
-    /// Returns the numbers of a line as other scenes write them.
+    /// Returns the numbers of a line in the notation of other scenes.
     fn values(&self, line: &Given) -> Vec<f64> {
         let values: Vec<_> = line.values.iter().map(|number| number.value).collect();
         if line.line.rule == Rule::Point { self.shifted(&values) } else { values }
     }
 
-    /// Adds an object or a light, and what it refers to.
+    /// Adds an object or a light, and the entities that it refers to.
     pub fn add(&mut self, found: Found<'a>, unmapped: &mut Unmapped, report: &mut Report<'_>) {
         let mut materials = Vec::new();
         for lines in &found.materials {
@@ -200,7 +201,7 @@ impl<'a, 'r> Entities<'a, 'r> {
         name
     }
 
-    /// Adds the texture whose file an object names, if it is drawn and there is such a file.
+    /// Adds the texture of the file that an object names, if it is used and the file exists.
     fn texture(&mut self, found: &Found<'_>, report: &mut Report<'_>) -> Option<String> {
         let (file, place) = found.file.as_ref().filter(|_| found.code.name != "displaced sphere")?;
         let path = self.folder.join(file);
@@ -221,7 +222,7 @@ impl<'a, 'r> Entities<'a, 'r> {
         Some(name)
     }
 
-    /// Adds the shader of an object that has one.
+    /// Adds the shader of an object, if it has one.
     fn shader(
         &mut self,
         found: &Found<'_>,
@@ -259,7 +260,7 @@ impl<'a, 'r> Entities<'a, 'r> {
     }
 }
 
-/// Writes the radius and the height of something round.
+/// Writes the radius and the height of a round shape.
 fn round(object: &mut Draft<'_, '_, '_>, name: &str, [radius, height]: [f64; 2], places: &[Range<usize>]) {
     let [r, h] = [radius, height].map(shortest);
     match name {
@@ -282,14 +283,14 @@ fn from(variable: &str, at: f64) -> String {
     }
 }
 
-/// The notes' swirl: tiles along u v^2 + u v, without red and without blue in turn.
+/// Returns the notes' swirl: tiles along u v^2 + u v, alternately without red and without blue.
 fn swirl(at: [f64; 2], [red, green, blue]: [f64; 3]) -> [String; 3] {
     let [u, v] = [from("x", at[0]), from("y", at[1])];
     let odd = format!("mod(floor({u}*{v}*({v} + 1)/100), 2)");
     [format!("{}*(1 - {odd})", shortest(red)), shortest(green), format!("{}*{odd}", shortest(blue))]
 }
 
-/// Hues around a point: of the angle t of (u, v), 1 + cos(2t + 2 pi k/3), with k = 0, 1 and 2.
+/// Returns hues around a point: 1 + cos(2t + 2 pi k/3) for the angle t of (u, v), with k = 0, 1 and 2.
 fn hues(at: [f64; 2], colour: [f64; 3]) -> [String; 3] {
     let [u, v] = [from("x", at[0]), from("y", at[1])];
     let square = format!("({u}^2 + {v}^2)");

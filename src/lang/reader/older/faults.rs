@@ -1,4 +1,4 @@
-//! What may be wrong with a scene of numbers, in its own terms.
+//! The errors and warnings of a scene of numbers, in its own terms.
 
 use super::codes::{Numbers, PROJECTOR, Rule, UNREAD, VIEWPOINT};
 use super::rows::{Number, Row};
@@ -6,15 +6,15 @@ use crate::reader::fault::Fault;
 use std::ops::Range;
 use tabray_core::text::shortest;
 
-/// How the numbers of a line are counted in messages.
+/// The ordinals of a line's numbers in messages.
 const COUNTED: [&str; 3] = ["first", "second", "third"];
 
-/// A line that is skipped, since it does not begin with what may stand there.
+/// Warns of a skipped line with an unexpected beginning.
 pub fn skipped(row: &Row<'_>, expected: &str) -> Fault {
     Fault::warning(Some(row.place()), format!("this line begins with no {expected}, and is skipped"))
 }
 
-/// A scene without its first two lines.
+/// Warns of a scene without its first two lines.
 pub fn fragment(place: Range<usize>, ([width, height], [x, y, z]): ([f64; 2], [f64; 3])) -> Fault {
     Fault::warning(
         Some(place),
@@ -23,7 +23,7 @@ pub fn fragment(place: Range<usize>, ([width, height], [x, y, z]): ([f64; 2], [f
     .label(format!("read as after `{width} {height}` and `{x} {y} {z}`, which most scenes begin with"))
 }
 
-/// A code that stands for something else in this scene than in others.
+/// Reports a code that has another meaning in this scene than in others.
 pub fn other_numbering(code: &Number) -> Fault {
     let message = "this scene has a different numbering, which is not read";
     let label = match code.code() {
@@ -36,14 +36,13 @@ pub fn other_numbering(code: &Number) -> Fault {
     )
 }
 
-/// A code whose lines are not known.
+/// Reports a code with unknown lines.
 pub fn unread(code: u32, place: Range<usize>) -> Option<Fault> {
     let (_, message) = UNREAD.iter().find(|(unread, _)| *unread == code)?;
     Some(Fault::error(Some(place), *message).help("leave its lines out"))
 }
 
-/// The object whose lines are read, for messages: its name in messages, the place of its code, and the lines that
-/// follow the code.
+/// The current object, for messages: its name, the place of its code, and the description of the lines after the code.
 pub struct Context {
     pub name: &'static str,
     pub place: Option<Range<usize>>,
@@ -62,13 +61,13 @@ impl Context {
     }
 }
 
-/// A text that ends where a line is expected.
+/// Reports the end of the text in place of a line.
 pub fn ends_early(line: &str, context: &Context, end: usize) -> Fault {
     let fault = context.fault(end..end, format!("the {line} of this {} is missing", context.name));
     fault.label("the text ends here")
 }
 
-/// A line with fewer numbers than it should have.
+/// Reports a line with too few numbers.
 pub fn too_few(line: &Numbers, row: &Row<'_>, count: usize, begins_object: bool, context: &Context) -> Fault {
     let Numbers { name, count: expected, .. } = line;
     if begins_object {
@@ -81,7 +80,7 @@ pub fn too_few(line: &Numbers, row: &Row<'_>, count: usize, begins_object: bool,
     context.fault(row.place(), message).label(format!("the {next} number is missing"))
 }
 
-/// A number that goes on in a way that numbers do not, or that is too large.
+/// Reports a number with invalid characters after it, or one that is too large.
 pub fn unlike_a_number(row: &Row<'_>, value: &Number) -> Option<Fault> {
     let place = value.place.clone();
     if value.value.is_infinite() {
@@ -93,7 +92,7 @@ pub fn unlike_a_number(row: &Row<'_>, value: &Number) -> Option<Fault> {
     Some(fault.help("a number has a `.` before its fraction, and white space after it"))
 }
 
-/// Numbers that are not what they must be.
+/// Reports numbers that break their rule.
 pub fn against_rule(line: &Numbers, values: &[Number], context: &Context) -> Option<Fault> {
     let is_bad = |value: &Number| match line.rule {
         Rule::Any | Rule::Direction => false,

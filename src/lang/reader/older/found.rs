@@ -1,10 +1,10 @@
-//! Objects and lights as they are read.
+//! Objects and lights as read.
 
 use super::codes::{Code, Numbers};
 use super::rows::Number;
 use std::ops::Range;
 
-/// An object or a light as it is read.
+/// An object or a light as read.
 pub struct Found<'a> {
     pub code: &'static Code,
     /// The place of the code.
@@ -15,7 +15,7 @@ pub struct Found<'a> {
     pub file: Option<(&'a str, Range<usize>)>,
 }
 
-/// A line of numbers that was read.
+/// A line of numbers as read.
 pub struct Given {
     pub line: Numbers,
     pub values: Vec<Number>,

@@ -1,5 +1,5 @@
-//! Older scenes of the course: numbers in a fixed order, without names. A code such as 13 for a sphere stands on a line of
-//! its own, and the lines after it hold its numbers.
+//! Older scenes of the course: numbers in a fixed order, without names. A code such as 13 for a sphere is on its own
+//! line, and its numbers are on the lines after it.
 
 mod codes;
 mod entities;
@@ -25,7 +25,7 @@ use unmapped::Unmapped;
 /// The usual first two lines of these scenes: the world's size and the viewpoint.
 const USUAL: ([f64; 2], [f64; 3]) = ([8.0, 6.0], [0.0, 0.0, 3.0]);
 
-/// Tells whether a text is such a scene. No scene in the language of words, or in TOML, is.
+/// Tells whether a text is an older scene, unlike scenes in the language of words or in TOML.
 pub fn is_older(registry: &Registry, text: &str) -> bool {
     let mut all = rows(text, 0);
     let Some(first) = all.next() else { return false };
@@ -45,7 +45,7 @@ pub fn is_older(registry: &Registry, text: &str) -> bool {
     has_head || (0..lines.0.len()).any(|at| lines.begins_object(at) && (at != 0 || begins(3) >= 3))
 }
 
-/// Reads the scene that stands in a range of a text. File names are relative to `folder`.
+/// Reads the scene in a range of a text. File names are relative to `folder`.
 pub fn parse<'a>(
     text: &'a str,
     range: Range<usize>,
@@ -83,24 +83,24 @@ impl<'a> Lines<'a> {
         Self(rows(text, start).collect())
     }
 
-    /// Returns the numbers with which a line begins, up to `most` of them.
+    /// Returns the numbers at the beginning of a line, up to `most` of them.
     fn numbers(&self, at: usize, most: usize) -> Vec<Number> {
         self.0.get(at).map_or_else(Vec::new, |row| row.numbers(most))
     }
 
-    /// Returns the indices of the lines that begin with numbers, from one on.
+    /// Returns the indices of the lines that begin with numbers, starting at `from`.
     fn of_numbers(&self, from: usize) -> impl Iterator<Item = usize> {
         (from..self.0.len()).filter(|at| self.0[*at].is_of_numbers())
     }
 
-    /// Returns the code of an object or a light that a line may hold: a known one, with an index after it at most.
+    /// Returns the possible code of an object or a light on a line: a known code, alone or with an index after it.
     fn code(&self, at: usize) -> Option<u32> {
         let numbers = self.numbers(at, 3);
         let code = numbers.first()?.code()?;
         (numbers.len() <= 2 && codes::is_known(code)).then_some(code)
     }
 
-    /// Tells whether an object or a light begins at a line: two lines of three numbers follow each of their codes.
+    /// Tells whether an object or a light begins at a line. Two lines of three numbers follow each of their codes.
     fn begins_object(&self, at: usize) -> bool {
         let mut after = self.of_numbers(at + 1).map(|at| self.numbers(at, 3).len());
         self.code(at).is_some() && after.next() == Some(3) && after.next() == Some(3)
@@ -111,9 +111,9 @@ struct Reader<'a, 'r, 't> {
     lines: Lines<'a>,
     /// The index of the next line.
     at: usize,
-    /// The position at which the text ends.
+    /// The position of the end of the text.
     end: usize,
-    /// How many lines a material has.
+    /// The number of lines of a material.
     of_material: usize,
     entities: Entities<'a, 'r>,
     unmapped: Unmapped,
@@ -121,7 +121,7 @@ struct Reader<'a, 'r, 't> {
 }
 
 impl<'a> Reader<'a, '_, '_> {
-    /// Returns the fault of a scene in which the codes have other meanings.
+    /// Returns an error if the codes of the scene have other meanings.
     fn other_numbering(&self) -> Option<Fault> {
         let is_other = |at: &usize| match self.lines.code(*at) {
             Some(PROJECTOR) => self.lines.begins_object(*at),
@@ -137,7 +137,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some(faults::other_numbering(&self.lines.numbers(at, 1)[0]))
     }
 
-    /// Goes to the next line that begins with a number, and reports those that are skipped.
+    /// Advances to the next line that begins with a number, and reports skipped lines.
     fn next(&mut self) -> Option<Row<'a>> {
         loop {
             let row = *self.lines.0.get(self.at)?;
@@ -182,7 +182,7 @@ impl<'a> Reader<'a, '_, '_> {
         }
     }
 
-    /// Reads the next object or light; returns whether there was one.
+    /// Reads the next object or light. Returns whether there was one.
     fn object(&mut self) -> bool {
         let Some(row) = self.next() else { return false };
         self.at += 1;
@@ -213,8 +213,8 @@ impl<'a> Reader<'a, '_, '_> {
         true
     }
 
-    /// Reads the lines that follow a code. Returns `None` where it is unclear which lines belong to the code, and an
-    /// error where the lines themselves are wrong.
+    /// Reads the lines after a code. Returns `None` if it is unclear which lines belong to the code, and an error if
+    /// the lines themselves are wrong.
     fn lines_of(&mut self, code: &'static Code, place: Range<usize>) -> Option<Result<Found<'a>, ()>> {
         let context =
             Context { name: code.name, place: Some(place.clone()), usage: code.usage(self.of_material) };
@@ -253,7 +253,7 @@ impl<'a> Reader<'a, '_, '_> {
         Some(if is_sound { Ok(found) } else { Err(()) })
     }
 
-    /// Reads one of the first two lines, and reports what is wrong with it.
+    /// Reads one of the first two lines, and reports its errors.
     fn numbers(&mut self, line: Numbers, context: &Context) -> Option<Given> {
         let given = self.checked(line, context);
         if given.is_none() && !self.lines.begins_object(self.at) {
@@ -262,8 +262,8 @@ impl<'a> Reader<'a, '_, '_> {
         given.flatten()
     }
 
-    /// Reads a line of numbers. Returns `None` where the line has too few numbers, and `Some(None)` where their values
-    /// are not allowed.
+    /// Reads a line of numbers. Returns `None` if the line has too few numbers, and `Some(None)` if their values are
+    /// not allowed.
     fn checked(&mut self, line: Numbers, context: &Context) -> Option<Option<Given>> {
         let Some(row) = self.next() else {
             self.report.add(faults::ends_early(line.name, context, self.end));

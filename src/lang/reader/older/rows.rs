@@ -1,33 +1,32 @@
-//! The lines of a scene of numbers. Each line begins with the numbers that are expected there; the rest of the line is
-//! a comment.
+//! The lines of a scene of numbers. Each line begins with the expected numbers, and the rest is a comment.
 
 use std::ops::Range;
 
-/// A line that is not blank, without the white space around it.
+/// A line that is not blank, without surrounding white space.
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
-    /// Its position in the whole text, in bytes.
+    /// The position of the line in the whole text, in bytes.
     start: usize,
     pub text: &'a str,
 }
 
-/// A number of a line, as C's `scanf` reads one.
+/// A number of a line, as C's `scanf` would read it.
 #[derive(Clone)]
 pub struct Number {
     pub value: f64,
     pub place: Range<usize>,
-    /// Whether something other than white space follows at once.
+    /// Whether something other than white space follows directly.
     is_joined: bool,
 }
 
 impl Number {
-    /// Returns the code that the number may be.
+    /// Returns the possible code for the number.
     pub fn code(&self) -> Option<u32> {
         (self.value.fract() == 0.0 && (0.0..1e6).contains(&self.value)).then_some(self.value as u32)
     }
 }
 
-/// Returns the lines of a text that begins at `start`, without blank ones.
+/// Returns the lines of a text that begins at `start`, except blank ones.
 pub fn rows(text: &str, start: usize) -> impl Iterator<Item = Row<'_>> {
     text.split(['\n', '\r']).filter_map(move |line| {
         let row = line.trim();
@@ -47,7 +46,7 @@ impl<'a> Row<'a> {
         number_length(self.text).is_some()
     }
 
-    /// Returns the numbers with which the line begins, up to `most` of them.
+    /// Returns the numbers at the beginning of the line, up to `most` of them.
     pub fn numbers(&self, most: usize) -> Vec<Number> {
         let (mut numbers, mut at) = (Vec::with_capacity(most), 0);
         while numbers.len() < most
@@ -66,13 +65,12 @@ impl<'a> Row<'a> {
         numbers
     }
 
-    /// Returns the index that a line with a code may have after it.
+    /// Returns the optional index after a code on its line.
     pub fn index(&self) -> Option<Number> {
         self.numbers(2).into_iter().nth(1).filter(|index| !index.is_joined)
     }
 
-    /// Returns the text that looks like further digits of the number ending at this position of the whole text: `,5`
-    /// after `1`.
+    /// Returns the text that looks like further digits of a number of the line: `,5` after `1`.
     pub fn more_digits(&self, number: &Number) -> Option<&'a str> {
         let rest = &self.text[number.place.end - self.start..];
         let digits = rest.strip_prefix([',', '.', '-', '+'])?;
@@ -80,14 +78,14 @@ impl<'a> Row<'a> {
         (length > 0).then(|| &rest[..length + 1])
     }
 
-    /// Returns the first word of the line and its range in the whole text.
+    /// Returns the first word of the line, and its range in the whole text.
     pub fn word(&self) -> (&'a str, Range<usize>) {
         let word = self.text.split_whitespace().next().unwrap_or_default();
         (word, self.start..self.start + word.len())
     }
 }
 
-/// Returns the length of the number that a text begins with: `.5`, `-3`, `1e-4`.
+/// Returns the length of the number at the beginning of a text: `.5`, `-3`, `1e-4`.
 fn number_length(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();

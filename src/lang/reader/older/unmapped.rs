@@ -1,4 +1,4 @@
-//! What is not drawn as the programs of the time drew it, in one note.
+//! The differences from the images of the programs of the time, in one note.
 
 use super::rows::Number;
 use crate::reader::fault::Fault;
@@ -8,7 +8,7 @@ use tabray_core::text::{count, shortest};
 /// The maximum number of differences that the note lists.
 const MOST: usize = 12;
 
-/// The differences, each with the place where it is found first, and how often it is found.
+/// The differences, each with its first place and the number of occurrences.
 #[derive(Default)]
 pub struct Unmapped(Vec<(String, Range<usize>, usize)>);
 
@@ -21,7 +21,7 @@ impl Unmapped {
         }
     }
 
-    /// Notes a shader, whose number only its own program knows.
+    /// Notes a shader with a number that only its own program knows.
     pub fn shader(&mut self, number: &Number) {
         let value = shortest(number.value);
         let what = match value.as_str() {
@@ -37,7 +37,7 @@ impl Unmapped {
         self.add("what is transparent tints what is behind it, by its diffuse colour".to_owned(), place);
     }
 
-    /// Notes a transparency of tiles that differs from that of the tiles between them.
+    /// Notes a different transparency of alternate tiles.
     pub fn transparent_tiles(&mut self, place: Range<usize>) {
         self.add("all tiles of a plane are as transparent as the first".to_owned(), place);
     }
@@ -60,7 +60,7 @@ impl Unmapped {
         self.add("a displaced sphere is drawn as a plain one".to_owned(), place);
     }
 
-    /// Returns the note, if there is anything to say.
+    /// Returns the note, if there are differences.
     pub fn fault(self) -> Option<Fault> {
         let text = |what: String, times: usize| match times {
             1 => what,
