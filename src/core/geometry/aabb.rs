@@ -6,7 +6,7 @@ use glam::DVec3;
 use tabray_exact::double_double::power_of_two;
 
 /// The slack for rounding errors, as a fraction of a point's distance from the world's origin: 4500 EPSILON, far more
-/// than the few roundings that a coordinate goes through.
+/// than the few roundings of a coordinate.
 pub const SLACK: f64 = 1e-12;
 
 /// An axis-aligned bounding box in world coordinates.
@@ -19,7 +19,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// A box that contains nothing, to be grown.
+    /// An empty box, the start of a union.
     pub const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
     /// Returns the bounding box of some points.
@@ -33,7 +33,7 @@ impl Aabb {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Returns whether two boxes have a point in common.
+    /// Returns whether two boxes have a common point.
     #[inline(always)]
     pub fn overlaps(&self, other: &Self) -> bool {
         self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
@@ -51,7 +51,8 @@ impl Aabb {
         0.5 * (self.high - self.low)
     }
 
-    /// Returns the box grown by the rounding error of the coordinates of points in it, and of points at this distance.
+    /// Returns the box, enlarged by the rounding error of the coordinates of points in it, and of points at this
+    /// distance.
     #[inline(always)]
     pub fn with_slack(&self, distance: f64) -> Self {
         let size = |of: f64| if of.is_finite() { of.abs() } else { 0.0 };
@@ -61,8 +62,8 @@ impl Aabb {
     }
 }
 
-/// Returns a lower bound of the distance from a point to a shape with these bounds, in world units. `is_clear_of` says
-/// that no part of the shape is in a region.
+/// Returns a lower bound of the distance from a point to a shape with these bounds, in world units. `is_clear_of` tells
+/// whether no part of the shape is in a region.
 pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) -> bool) -> f64 {
     let scale = from.abs().max_element();
     let outside = bounds.map_or(0.0, |bounds| {
@@ -72,8 +73,8 @@ pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) 
     if outside > 0.0 {
         return outside * (1.0 - SLACK);
     }
-    // The largest clear cube around the point, to one eighth of its size. Its half size exceeds 1e-8 of the
-    // coordinates, so that rounding moves the sides of the cube by less than 1e-6 of its size.
+    // This is the largest clear cube around the point, to one eighth of its size. Its half size exceeds 1e-8 of the
+    // coordinates, and so rounding moves its sides by less than 1e-6 of its size.
     let clear = |half: &f64| is_clear_of(&Aabb { low: from - *half, high: from + *half });
     let min_half = (1e4 * SLACK * scale).max(1e-12);
     let sizes = (-40..60).rev().map(power_of_two).take_while(|half| *half > min_half);
@@ -83,8 +84,7 @@ pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) 
     })
 }
 
-/// Maps a number to an integer such that integers compare as the numbers do. Integer minima are found several lanes at
-/// a time, without special cases for NaN.
+/// Maps a number to an integer that preserves the order. Integer minima are vectorized without special cases for NaN.
 #[inline(always)]
 pub(crate) fn order(number: f64) -> i64 {
     let bits = number.to_bits() as i64;
@@ -108,13 +108,13 @@ pub(crate) fn range(of: &[f64]) -> (f64, f64) {
     (from_order(low), from_order(high))
 }
 
-/// Returns the smaller of two numbers; the second one where either is NaN.
+/// Returns the smaller of two numbers, or the second one if either is NaN.
 #[inline(always)]
 pub(crate) fn smaller(one: f64, other: f64) -> f64 {
     if one < other { one } else { other }
 }
 
-/// Returns the larger of two numbers; the second one where either is NaN.
+/// Returns the larger of two numbers, or the second one if either is NaN.
 #[inline(always)]
 pub(crate) fn larger(one: f64, other: f64) -> f64 {
     if one > other { one } else { other }

@@ -1,32 +1,32 @@
-//! Flat parts of surfaces, compared by the numbers of the scene: two facets may lie in one plane exactly.
+//! Flat parts of surfaces, compared by the numbers of the scene to decide whether two of them lie exactly in one plane.
 
 use crate::geometry::placement::{Placement, Rotation};
 use glam::DVec3;
 use tabray_exact::double_double::two_sum;
 
-/// The plane that contains all of a closed shape's surface near a point, and the side on which the shape lies.
+/// The plane that contains all of a closed shape's surface near a point, and the side of the shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {
     plane: Plane,
-    /// Whether the shape's outward normal points to where the plane's coordinate, or height, grows.
+    /// Whether the shape's outward normal points in the direction of the plane's coordinate or height.
     is_upward: bool,
-    /// The placement of the plane in the world; `None` if its numbers are world coordinates.
+    /// The placement of the plane, or `None` if its numbers are world coordinates.
     placement: Option<Placement>,
 }
 
 /// A plane, described by unrounded numbers. Different numbers may describe the same plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Plane {
-    /// The points with this coordinate on an axis of the world: the exact sum of two numbers, of which the first is
-    /// their sum, rounded.
+    /// The points with this coordinate along an axis of the world: the exact sum of two numbers. The first is this sum,
+    /// rounded.
     Across { axis: usize, at: (f64, f64) },
     /// The points at a height above a point, along a direction of any length.
     Above { base: DVec3, direction: DVec3, height: f64 },
 }
 
 impl Facet {
-    /// Returns the facet of a triangle with this outward normal, which need not be exact; `None` where the triangle is
-    /// not perpendicular to an axis.
+    /// Returns the facet of a triangle with this outward normal, which may be rounded, or `None` if the triangle is not
+    /// perpendicular to an axis.
     pub(crate) fn of_triangle([a, b, c]: [DVec3; 3], normal: DVec3) -> Option<Self> {
         let axis = (0..3).find(|axis| a[*axis] == b[*axis] && b[*axis] == c[*axis])?;
         Some(Self::across(axis, (a[axis], 0.0), normal[axis] > 0.0))
@@ -47,7 +47,7 @@ impl Facet {
         Self { plane: Plane::Across { axis, at }, is_upward, placement: None }
     }
 
-    /// Returns the facet of a copy; `None` where more than one placement is needed to say where the copy lies.
+    /// Returns the facet of a copy, or `None` if the copy needs more than one placement.
     pub fn placed(self, placement: Placement) -> Option<Self> {
         let Self { plane, is_upward, placement: None } = self else { return None };
         if let Plane::Across { axis, at: (high, low) } = plane
@@ -63,8 +63,8 @@ impl Facet {
         Some(Self { placement: Some(placement), ..self })
     }
 
-    /// Tells for the outer and the inner side of a facet whether the shape of this facet, which passes through the same
-    /// point, contains the space beside it; `None` where the two may lie in different planes.
+    /// Tells whether the shape of this facet contains the space on the outer and on the inner side of another facet
+    /// through the same point. Returns `None` if the two may lie in different planes.
     pub fn beside(&self, other: &Self) -> Option<[bool; 2]> {
         let is_same = self.plane == other.plane && self.placement == other.placement;
         is_same.then_some(if self.is_upward == other.is_upward { [false, true] } else { [true, false] })

@@ -1,4 +1,4 @@
-//! Frames: a shape's own coordinate system, and its position in the world.
+//! Frames: a shape's own coordinate system, and its position in world space.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
@@ -10,8 +10,8 @@ use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 pub use tabray_exact::roots::stretch::BLUR;
 
-/// Returns a bound of the rounding error of each coordinate of a point in a frame at this distance along a ray, in
-/// world units. It consists of [`BLUR`] and of the error of a camera ray's direction, which is less than EPSILON.
+/// Returns a bound of the rounding error of each coordinate of a point in a frame, at this distance along a ray, in
+/// world units. It includes [`BLUR`] and the error of a camera ray's direction, which is less than EPSILON.
 #[inline(always)]
 pub fn blur(at: DVec3, distance: f64) -> f64 {
     BLUR * at.abs().element_sum() + 2.0 * f64::EPSILON * distance.abs()
@@ -22,9 +22,9 @@ pub fn blur(at: DVec3, distance: f64) -> f64 {
 pub struct Frame {
     /// The origin of the shape's own coordinates, in world coordinates.
     pub origin: DVec3,
-    /// The directions of the shape's own x, y and z axes in the world, as columns.
+    /// The directions of the shape's own x, y and z axes in world space, as columns.
     pub axes: DMat3,
-    /// A vector along the y axis as the scene gives it, times a power of two; `None` where the axes are the world's.
+    /// The scene's vector along the y axis, times a power of two, or `None` if the axes are the world's.
     axis: Option<DVec3>,
 }
 
@@ -34,8 +34,8 @@ impl Frame {
         Self { origin, axes: DMat3::IDENTITY, axis: None }
     }
 
-    /// Returns a frame whose y axis is along a nonzero vector. Its rotation around that axis is arbitrary: the frame is
-    /// for surfaces of revolution.
+    /// Returns a frame with its y axis along a nonzero vector, for surfaces of revolution. Its rotation around that
+    /// axis is arbitrary.
     pub fn around(origin: DVec3, axis: DVec3) -> Self {
         let axis = scaled(axis);
         let axes = orthonormal_basis(axis.normalize().to_array(), sign(axis)).map(DVec3::from);
@@ -47,26 +47,26 @@ impl Frame {
         Facet::above(self.origin, self.axis.unwrap_or(DVec3::Y), height, is_upward)
     }
 
-    /// Transforms a direction from the world to the shape's own coordinates.
+    /// Transforms a direction from world space to the shape's own coordinates.
     #[inline(always)]
     pub fn direction(&self, dir: DVec3) -> DVec3 {
         DVec3::new(self.axes.x_axis.dot(dir), self.axes.y_axis.dot(dir), self.axes.z_axis.dot(dir))
     }
 
-    /// Transforms a point from the world to the shape's own coordinates.
+    /// Transforms a point from world space to the shape's own coordinates.
     #[inline(always)]
     pub fn point(&self, at: DVec3) -> DVec3 {
         self.direction(at - self.origin)
     }
 
-    /// Transforms a ray from the world to the shape's own coordinates.
+    /// Transforms a ray from world space to the shape's own coordinates.
     #[inline(always)]
     pub fn ray(&self, ray: &Ray) -> Ray {
         Ray { origin: self.point(ray.origin), dir: self.direction(ray.dir) }
     }
 
-    /// Transforms a line from the world to the shape's own coordinates, using the numbers of the scene that the frame
-    /// was made from.
+    /// Transforms a line from world space to the shape's own coordinates, using the numbers of the scene that define
+    /// the frame.
     pub fn line<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         let origin = per_axis(|axis| line.origin[axis] - N::constant(self.origin[axis]));
         let Some(axis) = self.axis else { return Line { origin, dir: line.dir } };
@@ -79,23 +79,23 @@ impl Frame {
         }
     }
 
-    /// Returns the vector in the world from the frame's origin to the point at a distance along a ray: rounded about
-    /// once, however far away the ray's origin is.
+    /// Returns the vector in world space from the frame's origin to the point at a distance along a ray. It is rounded
+    /// about once, regardless of the distance of the ray's origin.
     #[inline(always)]
     pub fn from_origin(&self, ray: &Ray, distance: f64) -> DVec3 {
         let along = |axis: usize| offset(ray.origin[axis], distance, ray.dir[axis], self.origin[axis]);
         DVec3::new(along(0), along(1), along(2))
     }
 
-    /// Returns a ray in the shape's own coordinates in double-double arithmetic; the result starts at the point at a
-    /// distance along the ray.
+    /// Returns a ray in the shape's own coordinates in double-double arithmetic, starting at the point at a distance
+    /// along the ray.
     pub fn exactly(&self, ray: &Ray, distance: f64) -> Line<DoubleDouble> {
         let Line { origin, dir } = Sight::along(ray).line::<DoubleDouble>();
         let start = Line { origin, dir }.at(DoubleDouble::from(distance));
         self.line(Line { origin: start, dir })
     }
 
-    /// Returns the bounding box in the world of a box in the shape's own coordinates.
+    /// Returns the bounding box in world space of a box in the shape's own coordinates.
     pub fn bounds(&self, own: &Aabb) -> Aabb {
         let DMat3 { x_axis, y_axis, z_axis } = self.axes;
         let middle = self.origin + self.axes * own.middle();
@@ -104,12 +104,12 @@ impl Frame {
     }
 }
 
-/// Returns 1 or -1, whichever has the sign of the vector's z, so that their sum does not cancel.
+/// Returns 1 or -1 with the sign of the vector's z, to avoid cancellation in their sum.
 fn sign(axis: DVec3) -> f64 {
     axis.z.signum()
 }
 
-/// Returns three perpendicular unit vectors, the second of which is `up` (Duff et al., "Building an Orthonormal Basis,
+/// Returns three perpendicular unit vectors. The second one is `up` (Duff et al., "Building an Orthonormal Basis,
 /// Revisited", 2017).
 fn orthonormal_basis<N: Scalar>(up: [N; 3], sign: f64) -> [[N; 3]; 3] {
     let ([x, y, z], sign) = (up, N::constant(sign));

@@ -13,8 +13,8 @@ pub struct ImagePoint<N = f64> {
 }
 
 impl<N: Scalar> ImagePoint<N> {
-    /// Returns the point as fractions of the distances between the centres of the outermost pixels, as the notes count
-    /// them. An image of a single pixel has only its middle.
+    /// Returns the point as fractions of the distances between the centres of the outermost pixels, like the notes. An
+    /// image of a single pixel only has its middle.
     pub fn fraction(&self) -> [N; 2] {
         [0, 1].map(|side| match self.pixels[side] {
             1 => N::constant(0.5),
@@ -23,7 +23,7 @@ impl<N: Scalar> ImagePoint<N> {
     }
 
     /// Returns the point in units of half the image's width, to the right and up from the image's middle. The left and
-    /// the right edge of the image, which are half a pixel beyond the centres of the outermost pixels, lie at -1 and 1.
+    /// the right edge of the image, half a pixel beyond the centres of the outermost pixels, are at -1 and 1.
     #[inline(always)]
     pub fn from_middle(&self) -> [N; 2] {
         let twice = |side: usize| self.at[side] + self.at[side] - N::constant((self.pixels[side] - 1) as f64);
@@ -40,7 +40,7 @@ impl ImagePoint {
     }
 }
 
-/// Returns the point, in pixels from the centre of the lower left pixel, that [`ImagePoint::from_middle`] takes to this
+/// Returns the point, in pixels from the centre of the lower left pixel, that [`ImagePoint::from_middle`] maps to this
 /// one.
 pub fn from_middle(place: DVec2, pixels: [usize; 2]) -> DVec2 {
     let [width, height] = pixels.map(|side| side as f64);

@@ -1,28 +1,28 @@
-//! On which side of a plane, or of a line in it, a point lies: decided exactly, as long as no product of the coordinates'
-//! differences, brought to sizes around 1, underflows.
+//! Decisions on which side of a plane, or of a line in it, a point lies. They are exact if no product of the
+//! coordinates' differences, scaled to about 1, underflows.
 
 use glam::DVec3;
 use std::cmp::Ordering;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::double_double::vectors::{cross, product, scaled_to_one, triple_product};
 
-/// A bound on the rounding error of a component of the cross product of two vectors between points, as a fraction of the
-/// product of their largest components. Units of 2^-53: 2 * (3 + 1), less than 16.
+/// A bound of the rounding error of a component of the cross product of two vectors between points, as a fraction of
+/// the product of their largest components. In units of 2^-53: 2 * (3 + 1), less than 16.
 const CROSS_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// A bound on the rounding error of the triple product of three such vectors, as a fraction of the product of their largest
-/// components. Units of 2^-53: 3 * (8 + 2 * 2) + 2 * 6 = 48, less than 64.
+/// A bound of the rounding error of the triple product of three such vectors, as a fraction of the product of their
+/// largest components. In units of 2^-53: 3 * (8 + 2 * 2) + 2 * 6 = 48, less than 64.
 const TRIPLE_ERROR: f64 = 32.0 * f64::EPSILON;
 
-/// Far more than what products lose that are too small for all digits.
+/// Far more than the loss of products that are too small to have all digits.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
-/// Returns on which side of the plane through three points another one lies: `Less` where they run counterclockwise as
-/// seen from it, and `Equal` where all four are in one plane.
+/// Returns the side of the plane through three points on which another point lies: `Less` if the three run
+/// counterclockwise as seen from it, and `Equal` if all four are in one plane.
 #[inline]
 pub(crate) fn side_of_plane(plane: [DVec3; 3], at: DVec3) -> Ordering {
     let [a, b, c] = plane.map(|corner| corner - at);
-    // All four are in one plane across an axis, as the corners of a box's side are.
+    // All four are in one plane across an axis, like the corners of a box's side.
     if (0..3).any(|axis| a[axis] == 0.0 && b[axis] == 0.0 && c[axis] == 0.0) {
         return Ordering::Equal;
     }
@@ -30,16 +30,16 @@ pub(crate) fn side_of_plane(plane: [DVec3; 3], at: DVec3) -> Ordering {
     let error = TRIPLE_ERROR * size(a) * size(b) * size(c) + UNDERFLOW * (1.0 + size(c));
     known(a.cross(b).dot(c), error).unwrap_or_else(|| {
         let [a, b, c] = plane.map(|corner| between(at, corner));
-        // Twice the digits nearly always decide. The sums have a few products of numbers up to 1, and each is off by
-        // 2^-100.
+        // Double-double arithmetic nearly always decides. The sums have a few products of numbers up to 1, each with an
+        // error of 2^-100.
         let part = |one: usize, other: usize| a[one] * b[other] - a[other] * b[one];
         let about = product([part(1, 2), part(2, 0), part(0, 1)], c);
         sign(if about.high.abs() > 1e-28 { about } else { triple_product(a, b, c) })
     })
 }
 
-/// Returns in which direction three points turn as seen along an axis, given by its index: `Equal` where they lie on one
-/// line.
+/// Returns the direction in which three points turn as seen along an axis, given by its index, or `Equal` if they lie
+/// on one line.
 #[inline]
 pub fn turn([from, to]: [DVec3; 2], at: DVec3, axis: usize) -> Ordering {
     let (a, b) = (from - at, to - at);
@@ -50,7 +50,7 @@ pub fn turn([from, to]: [DVec3; 2], at: DVec3, axis: usize) -> Ordering {
     known(a.cross(b)[axis], error).unwrap_or_else(|| sign(cross(between(at, from), between(at, to))[axis]))
 }
 
-/// Returns the index of an axis along which three points that do not lie on one line are seen apart.
+/// Returns the index of an axis along which three points that do not lie on one line do not appear on one line.
 pub(crate) fn axis_across([a, b, c]: [DVec3; 3]) -> usize {
     let normal = cross(between(a, b), between(a, c)).map(|part| part.high.abs());
     (0..3).max_by(|one, other| normal[*one].total_cmp(&normal[*other])).unwrap_or(0)

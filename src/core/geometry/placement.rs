@@ -1,9 +1,9 @@
-//! Placements: the position, size and rotation of a copy of a shape in the world.
+//! Placements: the position, size and rotation of a copy of a shape in world space.
 
 use glam::{DMat3, DVec3};
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 
-/// π as the sum of four numbers, to within [`PI_ERROR`].
+/// π as the sum of four numbers, up to [`PI_ERROR`].
 const PI: [f64; 4] = [
     std::f64::consts::PI,
     1.224_646_799_147_353_2e-16,
@@ -11,7 +11,7 @@ const PI: [f64; 4] = [
     1.112_454_220_863_365_3e-49,
 ];
 
-/// A bound on the difference between π and the sum of [`PI`].
+/// A bound of the difference between π and the sum of [`PI`].
 const PI_ERROR: f64 = 1e-64;
 
 /// A rotation, counterclockwise as seen from the end of the axis.
@@ -19,7 +19,7 @@ const PI_ERROR: f64 = 1e-64;
 pub enum Rotation {
     /// Around x, then y, then z, by these angles in degrees.
     Angles(DVec3),
-    /// Around an axis, a vector of any length but 0, by an angle in degrees.
+    /// Around an axis, a nonzero vector of any length, by an angle in degrees.
     Around {
         /// The axis.
         axis: DVec3,
@@ -32,12 +32,12 @@ impl Rotation {
     /// The rotation by 0 degrees.
     pub const NONE: Self = Self::Angles(DVec3::ZERO);
 
-    /// Tells whether the axis, where there is one, has a direction.
+    /// Tells whether the axis has a direction, if there is one.
     pub fn has_axis(&self) -> bool {
         !matches!(self, Self::Around { axis: DVec3::ZERO, .. })
     }
 
-    /// Returns the angles around x, y and z in degrees, where the rotation is given by them or around one of these axes.
+    /// Returns the angles around x, y and z in degrees, if the rotation is given by them or around one of these axes.
     pub fn angles(self) -> Option<DVec3> {
         match self {
             Self::Angles(degrees) => Some(degrees),
@@ -50,7 +50,7 @@ impl Rotation {
     }
 }
 
-/// A scaling along the axes, then a rotation, and then a translation, as the scene gives them.
+/// A scaling along the axes, then a rotation, and then a translation, in the numbers of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// The scale factors along the shape's own axes, all positive.
@@ -62,19 +62,19 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Returns the matrix that takes a vector from the world to the shape's own coordinates, rounded. Its transpose takes
-    /// normals to the world, up to their length.
+    /// Returns the rounded matrix that maps vectors from world space to the shape's own coordinates. Its transpose maps
+    /// normals to world space, up to their length.
     pub fn to_object_space(&self) -> DMat3 {
         let own = |vector: DVec3| DVec3::from(self.vector::<f64>(vector.to_array()));
         DMat3::from_cols(own(DVec3::X), own(DVec3::Y), own(DVec3::Z))
     }
 
-    /// Takes a point from the world to the shape's own coordinates.
+    /// Maps a point from world space to the shape's own coordinates.
     pub fn point<N: Scalar>(&self, at: [N; 3]) -> [N; 3] {
         self.vector(per_axis(|axis| at[axis] - N::constant(self.translation[axis])))
     }
 
-    /// Takes a vector from the world to the shape's own coordinates.
+    /// Maps a vector from world space to the shape's own coordinates.
     pub fn vector<N: Scalar>(&self, vector: [N; 3]) -> [N; 3] {
         let [x, y, z] = match (self.rotation.angles(), self.rotation) {
             (None, Rotation::Around { axis, degrees }) => turned_back_around(axis, degrees, vector),
@@ -91,7 +91,7 @@ impl Placement {
     }
 }
 
-/// Rotates a vector of a plane clockwise, by an angle in degrees.
+/// Rotates a vector in a plane clockwise, by an angle in degrees.
 fn turned_back<N: Scalar>(degrees: f64, x: N, y: N) -> (N, N) {
     // The remainder is exact.
     let degrees = degrees % 360.0;
@@ -107,9 +107,9 @@ fn turned_back<N: Scalar>(degrees: f64, x: N, y: N) -> (N, N) {
     }
 }
 
-/// Rotates a vector clockwise around an axis, a vector of any length but 0, by an angle in degrees.
+/// Rotates a vector clockwise around an axis, a nonzero vector of any length, by an angle in degrees.
 fn turned_back_around<N: Scalar>(axis: DVec3, degrees: f64, vector: [N; 3]) -> [N; 3] {
-    // Times a power of two, so that the squares stay in range.
+    // Scaling by a power of two keeps the squares in range.
     let exponent = libm::ilogb(axis.abs().max_element());
     let axis = per_axis(|index| N::constant(libm::scalbn(axis[index], -exponent)));
     let length = dot(axis, axis).sqrt();
@@ -119,7 +119,7 @@ fn turned_back_around<N: Scalar>(axis: DVec3, degrees: f64, vector: [N; 3]) -> [
     per_axis(|index| cos * vector[index] + sin * across[index] + along * axis[index])
 }
 
-/// Returns an angle in radians that is given in degrees.
+/// Converts an angle from degrees to radians.
 pub(crate) fn radians<N: Scalar>(degrees: f64) -> N {
     let [a, b, c, d] = PI;
     let half_turn = N::constant(a) + (N::constant(b) + (N::constant(c) + N::about(d, PI_ERROR)));
@@ -198,7 +198,7 @@ mod tests {
         let axis = DVec3::new(1.0, -2.0, 2.0);
         let there = |vector, degrees| around(axis, degrees).vector::<Wide>(vector);
         let vector = [0.1, 0.7, -3.0].map(Wide::constant);
-        // A third of a turn, three times.
+        // The vector is rotated by a third of a turn, three times.
         let back = (0..3).fold(vector, |vector, _| there(vector, 120.0));
         let along = there([1.0, -2.0, 2.0].map(Wide::constant), 77.0);
         for axis_of in 0..3 {

@@ -1,4 +1,4 @@
-//! Rays, distances along them, and the sides of surfaces that they hit.
+//! Rays, brackets of their hits, and bounds of their errors.
 
 use glam::DVec3;
 use std::ops::Deref;
@@ -25,9 +25,9 @@ impl Ray {
 /// Bounds of the distance of a ray's first hit of a shape in a range, in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bracket {
-    /// A lower bound of the first hit's distance; [`MISS`] where there is certainly no hit.
+    /// A lower bound of the first hit's distance, or [`MISS`] if there is certainly no hit.
     pub near: f64,
-    /// An upper bound of the first hit's distance where there certainly is a hit; else [`MISS`].
+    /// An upper bound of the first hit's distance if there certainly is a hit, or otherwise [`MISS`].
     pub far: f64,
 }
 
@@ -41,21 +41,21 @@ impl Bracket {
         Self { near: distance, far: distance }
     }
 
-    /// Returns whether the bracket leaves open if there is a hit.
+    /// Returns whether the bracket leaves the existence of a hit open.
     #[inline(always)]
     pub fn is_doubtful(&self) -> bool {
         (self.near < MISS) & (self.far == MISS)
     }
 
-    /// The bracket of a ray about which plain arithmetic says nothing.
+    /// The bracket of a ray about which plain arithmetic tells nothing.
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }
 
-/// A ray, and how far the rays that it stands for may be from it.
+/// A ray, and the maximum distance of the rays that it stands for.
 ///
-/// A ray in a copy's own coordinates stands for all rays that rounding may have turned into it. A ray of the world
-/// stands for itself. The rounding of a camera ray's direction, 3 units of 2^-53 in each component, is not counted
-/// here, and shapes allow for it.
+/// A ray in a copy's own coordinates stands for all rays that may have been rounded to it. A ray in world space stands
+/// for itself. The rounding of a camera ray's direction, 3 units of 2^-53 in each component, is not included here, and
+/// shapes account for it.
 #[derive(Clone, Copy, Debug)]
 pub struct RayBall {
     /// The ray.
@@ -95,12 +95,12 @@ impl Deref for RayBall {
     }
 }
 
-/// The maximum distance of a ray that was transformed and rounded from the ray that it stands for.
+/// The maximum distance between a transformed and rounded ray and the exact ray.
 #[derive(Clone, Copy, Debug)]
 pub struct RayError {
-    /// A bound on the distance between the origins, in units of the coordinates that the ray was taken to.
+    /// A bound of the distance between the origins, in units of the new coordinates.
     pub origin: f64,
-    /// A bound on the length of the difference between the directions, which are unit vectors.
+    /// A bound of the length of the difference between the directions, which are unit vectors.
     pub dir: f64,
 }
 

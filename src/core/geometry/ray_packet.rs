@@ -1,9 +1,9 @@
-//! Packets of rays as structures of arrays, so that one call of a shape serves all of them and the processor takes
-//! several rays at a time.
+//! Packets of rays as structures of arrays. A call of a shape serves all rays of a packet, and the processor handles
+//! several at once.
 //!
-//! A plugin is written for one ray. Kernels over packets inline its functions and are compiled for each level of
-//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES);
-//! the lanes beyond the last ray are copies of it, whose results are ignored.
+//! A plugin is written for one ray. Kernels over packets inline its functions, and are compiled for each instruction
+//! level ([`cpu`](crate::simd::cpu)). The length of arrays is a multiple of [`LANES`](crate::simd::soa::LANES). The
+//! lanes beyond the last ray are copies of it, and their results are ignored.
 
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::simd::cpu::kernels;
@@ -11,10 +11,10 @@ use crate::simd::soa::{View, ViewMut};
 use glam::DVec3;
 use std::ops::Range;
 
-/// The largest number of rays in a packet.
+/// The maximum number of rays in a packet.
 pub const PACKET_SIZE: usize = 256;
 
-/// The largest number of rays whose hits are searched together, where they lie close together.
+/// The maximum number of close rays whose hits are searched together.
 pub const BEAM: usize = 16;
 
 /// Splits the lanes of `count` rays into consecutive ranges of at most `max_size` lanes.
@@ -29,11 +29,12 @@ pub struct RayPacket<'r> {
     pub origin: View<'r>,
     /// The directions, unit vectors.
     pub dir: View<'r>,
-    /// The largest distance of any origin from the point that it stands for, in world units; 0 for camera rays.
+    /// The maximum distance between an origin and the exact point that it was rounded from, in world units. It is 0 for
+    /// camera rays.
     pub origin_error: f64,
-    /// How far the rays that each ray stands for may be from it.
+    /// The maximum distance between each ray and the rays that it stands for.
     pub drift: RayError,
-    /// The side of the shape that each ray leaves, if the rays leave the shape against which they are tested.
+    /// The side of the shape that each ray leaves, if the rays leave the shape that they are tested against.
     pub leaving: Option<&'r [Side]>,
 }
 
@@ -44,7 +45,7 @@ impl<'r> RayPacket<'r> {
         Self { origin, dir, origin_error, drift: RayError::NONE, leaving: None }
     }
 
-    /// Returns the rays as they leave a shape to these sides, at least as many as there are rays.
+    /// Returns the rays, leaving a shape to these sides. There must be at least as many sides as rays.
     #[inline(always)]
     pub fn leaving(self, leaving: Option<&'r [Side]>) -> Self {
         Self { leaving, ..self }
@@ -63,7 +64,7 @@ impl<'r> RayPacket<'r> {
         RayRange { far, origin_side, origin_error, ..RayRange::ALL }
     }
 
-    /// Computes the bracket of each ray in a range of its own.
+    /// Computes the bracket of each ray in its own range.
     #[inline]
     pub fn each(
         &self,
@@ -112,12 +113,12 @@ impl<'r> RayPacket<'r> {
 pub struct Nearest<'n> {
     /// Lower bounds of the distance of the hit of the object in `hit_ids`, in world units.
     pub near: &'n mut [f64],
-    /// Upper bounds of that distance, equal to `near` where the distance is known exactly. Where nothing is hit, both
-    /// bounds are the end of the search.
+    /// Upper bounds of that distance, equal to `near` if the distance is known exactly. Without a hit, both bounds are
+    /// the end of the search.
     pub far: &'n mut [f64],
-    /// The object's index plus 1; 0 for no object.
+    /// The object's index plus 1, or 0 for no object.
     pub hit_ids: &'n mut [u64],
-    /// Nonzero where brackets overlap, so that it is not known which of two hits is closer.
+    /// Nonzero if brackets overlap, and the nearer of two hits is unknown.
     pub doubt: &'n mut [u64],
 }
 
@@ -151,13 +152,13 @@ kernels! {
     }
 }
 
-/// The brackets of an object's hits, by lane. A trait, as closures are not reliably inlined into kernels.
+/// The brackets of an object's hits, by lane. This is a trait because closures are not reliably inlined into kernels.
 pub(crate) trait Brackets {
     /// Returns the bracket of a hit before `far`.
     fn get(&self, lane: usize, far: f64) -> Bracket;
 }
 
-/// Brackets that have been computed.
+/// Computed brackets.
 struct Known<'b> {
     near: &'b [f64],
     far: &'b [f64],
@@ -172,8 +173,8 @@ impl Brackets for Known<'_> {
 
 /// Merges an object's brackets of `count` rays into the closest hits so far. Returns whether any ray is in doubt.
 ///
-/// The arrays are arguments of their own, not a [`Nearest`], which tells the compiler that they do not overlap:
-/// otherwise it checks for overlap at every call, and takes small counts of rays one by one.
+/// The arrays are separate arguments, not a [`Nearest`], which tells the compiler that they do not overlap. Otherwise,
+/// it would check for overlap at each call, and handle small counts of rays one by one.
 #[inline(always)]
 pub(crate) fn merge_nearest(
     count: usize,
@@ -190,10 +191,10 @@ pub(crate) fn merge_nearest(
     for lane in 0..count {
         let Bracket { near: low, far: high } = brackets.get(lane, far[lane]);
         let is_nearer = high < near[lane];
-        // If two hits have the same distance, the object that is earlier in the scene wins.
+        // Of two hits at the same distance, that of the earlier object in the scene wins.
         let is_earlier = (low == far[lane]) & (hit_ids[lane] > id);
         let is_farther = (low >= far[lane]) & !is_earlier;
-        // A minimum, not a choice between two values: the compiler would turn a choice into masked stores, which are
+        // This is a minimum because the compiler would turn a choice between two values into masked stores, which are
         // slow without AVX-512.
         let (low, high) = if is_nearer { (low, high) } else { (MISS, MISS) };
         near[lane] = if low < near[lane] { low } else { near[lane] };
@@ -230,10 +231,10 @@ pub(crate) fn mark_occluded(
 pub struct SurfaceInteraction<'l> {
     /// The hit points, in world coordinates.
     pub points: ViewMut<'l>,
-    /// The unit normals with which the hit points are shaded, flipped to face the rays where both sides are lit.
+    /// The unit normals for shading the hit points, flipped to face the rays if both sides are lit.
     pub normals: ViewMut<'l>,
-    /// The unit normals of the surface itself, flipped likewise; not written unless the shape
-    /// is shaded with others.
+    /// The unit normals of the surface itself, flipped likewise. They are only written for shapes with other shading
+    /// normals.
     pub geometric_normals: ViewMut<'l>,
     /// The side that each ray hits.
     pub sides: &'l mut [Side],

@@ -1,4 +1,4 @@
-//! Rays whose digits are all known, for proofs about them.
+//! Exact rays, for proofs.
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::Placement;
@@ -12,16 +12,16 @@ use tabray_exact::dual::Dual;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, constants, per_axis};
 
-/// A ray as the scene gives it, before rounding.
+/// A ray in the numbers of the scene, before rounding.
 #[derive(Clone, Debug)]
 pub struct Sight {
     origin: DVec3,
     toward: SightTarget,
-    /// The placement whose coordinates the line has, unless it has world coordinates.
+    /// The placement whose own coordinates the line has, or `None` for world coordinates.
     within: Option<Arc<PlacementChain>>,
 }
 
-/// A placement, which may lie in the coordinates of another one.
+/// A placement, possibly in the coordinates of another one.
 #[derive(Debug)]
 struct PlacementChain {
     placement: Placement,
@@ -30,23 +30,23 @@ struct PlacementChain {
 
 #[derive(Clone, Debug)]
 enum SightTarget {
-    /// A direction, of any length. Its numbers were rounded if this says so.
+    /// A direction, of any length, and which of the ray's numbers were rounded.
     Direction(DVec3, Rounded),
     /// A point on the image plane z = 0, whose x and y are each `at / last * size`: `at` and `last` in pixels, `size`
     /// in world units.
     ImagePoint { at: DVec2, last: DVec2, size: DVec2 },
-    /// The direction forward of a frame.
+    /// The forward direction of a frame.
     Forward(Arc<ViewFrame>),
-    /// A point of the image of a frame, whose width is seen at this angle in degrees.
+    /// A point of the image of a frame. The angle of view across the image is in degrees.
     Ahead(Arc<(ViewFrame, f64, ImagePoint)>),
 }
 
-/// The numbers of a ray that do not come from the scene, but were computed from its numbers and rounded.
+/// The numbers of a ray that were computed from the scene's numbers and rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounded {
     /// None.
     Nothing,
-    /// The numbers of its start.
+    /// The numbers of the ray's start.
     Start,
     /// All of them.
     Ray,
@@ -62,8 +62,8 @@ pub struct Line<N> {
 }
 
 impl<F: Float> Line<Interval<F>> {
-    /// Returns bounds of the t, from 0 on, at which the line is in a box given by its low and its high corner; `None` if
-    /// it certainly misses the box.
+    /// Returns bounds of the t, from 0 on, at which the line is in a box, given by its low and its high corner, or
+    /// `None` if the line certainly misses the box.
     pub fn clip(&self, low: DVec3, high: DVec3) -> Option<(F, F)> {
         let (mut from, mut to) = (F::of(0.0), F::INFINITY);
         for axis in 0..3 {
@@ -91,13 +91,13 @@ impl Sight {
         Self { origin: viewpoint, toward: SightTarget::ImagePoint { at, last, size }, within: None }
     }
 
-    /// Returns the ray from a point, which was rounded, straight forward in a frame.
+    /// Returns the ray from a rounded point straight forward in a frame.
     pub fn forward(origin: DVec3, frame: &ViewFrame) -> Self {
         Self { origin, toward: SightTarget::Forward(Arc::new(*frame)), within: None }
     }
 
-    /// Returns the ray from a frame's viewer through a point of an image whose width is seen at an angle in degrees,
-    /// and whose pixels are square.
+    /// Returns the ray from a frame's viewer through a point of an image with square pixels. `angle` is the angle of
+    /// view across the image, in degrees.
     pub fn ahead(frame: &ViewFrame, angle: f64, at: ImagePoint) -> Self {
         Self {
             origin: frame.position(),
@@ -111,12 +111,12 @@ impl Sight {
         Self { origin: ray.origin, toward: SightTarget::Direction(ray.dir, Rounded::Ray), within: None }
     }
 
-    /// Returns the ray from a point along a direction of any length but 0. The numbers of both count as exact.
+    /// Returns the ray from a point along a nonzero direction of any length. The numbers of both count as exact.
     pub fn exactly(origin: DVec3, dir: DVec3) -> Self {
         Self { origin, toward: SightTarget::Direction(dir, Rounded::Nothing), within: None }
     }
 
-    /// Tells which of the ray's numbers were rounded before they were given.
+    /// Returns which of the ray's numbers were rounded before they were given.
     pub fn rounded(&self) -> Rounded {
         match self.toward {
             SightTarget::Direction(_, rounded) => rounded,
@@ -125,8 +125,8 @@ impl Sight {
         }
     }
 
-    /// Returns the sight whose [`line`](Self::line) is the line of this one in the coordinates of a placed shape. The
-    /// meaning of t does not change.
+    /// Returns the sight of a line in the coordinates of a placed shape: the [`line`](Self::line) of this one, with the
+    /// same t.
     pub fn within(&self, placement: Placement) -> Self {
         let Self { origin, toward, within: outer } = self.clone();
         Self { origin, toward, within: Some(Arc::new(PlacementChain { placement, outer })) }
@@ -179,7 +179,7 @@ impl Sight {
 }
 
 impl PlacementChain {
-    /// Takes a line from the world to the placed shape's own coordinates.
+    /// Maps a line from world space to the placed shape's own coordinates.
     fn line<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         let Line { origin, dir } = match &self.outer {
             None => line,
@@ -189,7 +189,7 @@ impl PlacementChain {
     }
 }
 
-/// Returns the unit vector along a vector of any length but 0, rounded as that of a camera's ray is.
+/// Returns the unit vector along a nonzero vector of any length, rounded like a camera ray's direction.
 fn unit(dir: DVec3) -> DVec3 {
     let largest = dir.abs().max_element();
     // The squares of the largest and the smallest numbers overflow and underflow.
@@ -197,8 +197,8 @@ fn unit(dir: DVec3) -> DVec3 {
     dir.normalize()
 }
 
-/// Returns the rounded unit vector from a viewpoint to a point of the image plane. A component is 0 only where the
-/// scene's numbers make it 0, so that a ray parallel to a plane differs from one that hits the plane far away.
+/// Returns the rounded unit vector from a viewpoint to a point of the image plane. A component is 0 only if the scene's
+/// numbers make it 0. A ray parallel to a plane thus differs from one that hits the plane far away.
 #[inline(always)]
 pub(crate) fn direction(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {
     let mut toward = toward(viewpoint, at, last, size);
@@ -214,8 +214,8 @@ pub(crate) fn toward(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> D
     (at / last * size).extend(0.0) - viewpoint
 }
 
-/// Returns a vector from a viewpoint to a point of the image plane, and computes exactly the components that rounding
-/// makes 0, as where the viewpoint has the x 3.2 and the point 8 times 6/15.
+/// Returns a vector from a viewpoint to a point of the image plane. Components that rounding makes 0 are computed
+/// exactly: for example, if the viewpoint's x is 3.2 and the point's x is 8 times 6/15.
 #[cold]
 #[inline(never)]
 fn unless_cancelled(toward: DVec3, viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {
@@ -225,7 +225,7 @@ fn unless_cancelled(toward: DVec3, viewpoint: DVec3, at: DVec2, last: DVec2, siz
         }
         let [there, here] = [two_product(at[side], size[side]), two_product(-viewpoint[side], last[side])];
         let parts = [there.0, there.1, here.0, here.1];
-        // Beyond 1e300 or so, the digits of a product cannot be told.
+        // Beyond about 1e300, the rounding error of a product is not a number.
         if parts.iter().all(|part| part.is_finite()) { exact_sum(parts).high / last[side] } else { 0.0 }
     };
     DVec3::new(part(0), part(1), toward.z)

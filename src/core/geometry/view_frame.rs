@@ -1,4 +1,4 @@
-//! The frame of a viewer: the position, the direction of view, and the direction up.
+//! The frame of a viewer: the position, the direction of view, and the up direction.
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::placement::radians;
@@ -14,26 +14,27 @@ pub struct ViewFrame {
     axes: [[DoubleDouble; 3]; 3],
 }
 
-/// The numbers of the scene that a frame follows from, all in world coordinates.
+/// The numbers of the scene that define a frame, all in world coordinates.
 #[derive(Clone, Copy, Debug)]
 struct ViewInputs {
     position: DVec3,
     target: DVec3,
-    /// A vector up, times a power of two that makes its largest component between 1/2 and 1.
+    /// An up vector, times a power of two that scales its largest component to between 1/2 and 1.
     up: DVec3,
-    /// The power of two that makes the largest component of the vector to the target between 1/2 and 1.
+    /// The power of two that scales the largest component of the vector to the target to between 1/2 and 1.
     scale: f64,
 }
 
-/// The least sine of the angle between the directions forward and up that make a frame.
+/// The minimum sine of the angle between the forward and up directions of a frame.
 const LEAST_SINE: f64 = 1e-6;
 
 impl ViewFrame {
     /// Returns the frame of a viewer that looks from a position toward a target. `up` is any vector that points up in
-    /// the image; `None` where it is along the line of sight to within 1e-6 radians, or where that has no direction.
+    /// the image. Returns `None` if it is along the line of sight up to 1e-6 radians, or if the line of sight has no
+    /// direction.
     pub fn new(position: DVec3, target: DVec3, up: DVec3) -> Option<Self> {
         let forward = (target - position).try_normalize()?;
-        // Scaling by a power of two loses no digit, and keeps squares from overflowing.
+        // Scaling by a power of two loses no digit, and keeps squares from overflow.
         let exponent = exponent_to_one((target - position).abs().max_element());
         let given = ViewInputs { position, target, up: scaled(up), scale: times_power_of_two(1.0, exponent) };
         let is_askew = forward.cross(given.up.try_normalize()?).length() > LEAST_SINE;
@@ -70,25 +71,25 @@ impl ViewFrame {
         self.given.axes()[2]
     }
 
-    /// Returns the unit vector toward a point of an image with square pixels, half of whose width is seen at an angle
-    /// with this tangent. Before the vector is normalized, each component is rounded about once, however much of it
-    /// cancels.
+    /// Returns the unit vector toward a point of an image with square pixels. `tangent` is the tangent of half the
+    /// angle of view across the image. Before the vector is normalized, each component is rounded about once,
+    /// regardless of cancellation.
     #[inline(always)]
     pub fn direction(&self, tangent: DoubleDouble, at: &ImagePoint) -> DVec3 {
         let ([x, y, z], [right, up]) = (self.axes, across(tangent, at));
         DVec3::from(per_axis(|axis| (z[axis] + right * x[axis] + up * y[axis]).high)).normalize()
     }
 
-    /// Returns a vector toward a point of an image with square pixels whose width is seen at an angle in degrees, in
-    /// any number type.
+    /// Returns a vector toward a point of an image with square pixels, in any number type. `angle` is the angle of view
+    /// across the image, in degrees.
     pub fn exact_direction<N: Scalar>(&self, angle: f64, at: ImagePoint<N>) -> [N; 3] {
         let ([x, y, z], tangent) = (self.given.axes::<N>(), half_tangent::<N>(angle));
         let [right, up] = at.from_middle().map(|side| tangent * side);
         per_axis(|axis| z[axis] + right * x[axis] + up * y[axis])
     }
 
-    /// Returns the point of the world at a point of an image with square pixels, which has this width in world units
-    /// and the viewer in its middle. Each coordinate is rounded about once.
+    /// Returns the point in world space at a point of an image with square pixels. The image has this width, in world
+    /// units, and the viewer in its middle. Each coordinate is rounded about once.
     #[inline(always)]
     pub fn beside(&self, width: f64, at: &ImagePoint) -> DVec3 {
         let ([x, y, _], from) = (self.axes, self.given.position);
@@ -104,11 +105,11 @@ impl ViewFrame {
     }
 }
 
-/// Returns a point of an image, to the right and up from its middle, in units such that half the image's width is this
-/// number of units.
+/// Returns a point of an image, to the right and up from its middle, in units that make half the image's width equal to
+/// `half`.
 #[inline(always)]
 fn across(half: DoubleDouble, at: &ImagePoint) -> [DoubleDouble; 2] {
-    // The same for all places of an image.
+    // The quotient is the same for all points of an image.
     let pixel = half / DoubleDouble::from(at.pixels[0] as f64);
     [0, 1].map(|side| DoubleDouble::difference(2.0 * at.at[side], (at.pixels[side] - 1) as f64) * pixel)
 }

@@ -1,4 +1,4 @@
-//! A ray, or a bundle of rays, prepared for tests against boxes.
+//! A ray or a bundle of rays, prepared for tests against boxes.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::ray::{Ray, RayError};
@@ -11,42 +11,43 @@ pub const LOW: usize = 0;
 /// The index of the high plane.
 pub const HIGH: usize = 1;
 
-/// The largest reciprocal of a direction's component.
+/// The maximum reciprocal of a direction's component.
 ///
-/// This stands for the reciprocal of 0. Within any distance that matters, a ray whose component is 0 moves less along the
-/// axis than the slack.
+/// This replaces the reciprocal of 0. Within all distances that matter, a ray with a component of 0 moves less along
+/// the axis than the slack.
 const STEEPEST: f64 = 1e150;
 
-/// The slack of rays whose coordinates are all 0, in world units: not 0, so that a product with [`STEEPEST`] is large.
+/// The slack of rays with coordinates that are all 0, in world units. It is not 0, and its product with [`STEEPEST`] is
+/// large.
 const LEAST_SLACK: f64 = 1e-100;
 
 /// Rays that are tested together: bounds of their origins and of their directions.
 ///
-/// The origins' bounds have a slack of [`SLACK`] times their largest coordinate. The slack exceeds the rounding of the
-/// distances to planes, and the distance by which rounding moves a ray with such coordinates. So where a beam misses a
-/// box, the rays before rounding miss it too.
+/// The bounds of the origins include a slack of [`SLACK`] times their largest coordinate. The slack exceeds the
+/// rounding of the distances to planes, and the shift of a ray with such coordinates by rounding. If a beam misses a
+/// box, the exact rays thus miss it, too.
 #[derive(Clone, Copy)]
 pub struct Beam {
-    /// The bounds of the origins along each axis. The first bounds are for measuring distances to near planes: the high
-    /// bound for low planes, and the low bound for high planes. The last of the four numbers is 0.
+    /// The bounds of the origins along each axis. The first bounds, for distances to near planes, are the high bound
+    /// for low planes and the low bound for high planes. The last of the four numbers is 0.
     pub from: [[f64; 4]; 2],
-    /// The reciprocals of the components of the directions, in the same way: of the largest component for low planes,
+    /// The reciprocals of the components of the directions, in the same order: of the largest component for low planes,
     /// and of the smallest one for high planes.
     pub inverse: [[f64; 4]; 2],
     /// The side of a box that the rays reach first along each axis, [`LOW`] or [`HIGH`].
     pub near: [usize; 3],
-    /// Whether some rays rise along the axis and others fall. They enter a box through either plane, and may never leave
+    /// Whether some rays rise along the axis and others fall. They enter a box through either plane, and may stay in
     /// it.
     pub is_mixed: [bool; 3],
     /// The slack of the origins, in world units.
     slack: f64,
-    /// A bound on the difference between the directions and the directions that they stand for.
+    /// A bound of the difference between the directions and those of the exact rays.
     swerve: f64,
-    /// The largest magnitude of a coordinate of the origins, in world units.
+    /// The maximum magnitude of a coordinate of the origins, in world units.
     reach: f64,
-    /// The largest extent of the origins along any axis, in world units.
+    /// The maximum extent of the origins along an axis, in world units.
     width: f64,
-    /// The largest difference between any component of the directions.
+    /// The maximum difference between the same component of two directions.
     spread: f64,
 }
 
@@ -57,8 +58,8 @@ impl Beam {
         Self::between([ray.origin; 2], [ray.dir; 2], drift)
     }
 
-    /// Bounds the rays of a packet that end beyond 0, given the distances in world units at which its rays end, and all
-    /// rays within a drift of those. Returns `None` if there are none.
+    /// Bounds the rays of a packet that end beyond 0, and all rays within a drift of them. `t_max` has the ends of the
+    /// packet's rays, as distances in world units. Returns `None` if there are no such rays.
     #[inline(always)]
     pub fn around(rays: RayPacket, t_max: &[f64], drift: RayError) -> Option<Self> {
         let lane = t_max.iter().position(|t_max| *t_max > 0.0)?;
@@ -83,7 +84,7 @@ impl Beam {
         ))
     }
 
-    /// Bounds rays by the least and the greatest coordinates of their origins, and components of their directions.
+    /// Bounds rays, given the minimum and maximum coordinates of their origins and components of their directions.
     #[inline(always)]
     fn between([low, high]: [DVec3; 2], [mut least, mut greatest]: [DVec3; 2], drift: RayError) -> Self {
         let reach = larger(low.abs().max_element(), high.abs().max_element());
@@ -93,7 +94,7 @@ impl Beam {
         }
         let (mut near, mut is_mixed) = ([LOW; 3], [false; 3]);
         for axis in 0..3 {
-            // Signs, not comparisons, as -0 has a negative reciprocal.
+            // Signs replace comparisons, because -0 has a negative reciprocal.
             let (falls, all_fall) = (least[axis].is_sign_negative(), greatest[axis].is_sign_negative());
             near[axis] = usize::from(falls & all_fall);
             is_mixed[axis] = falls & !all_fall;
@@ -123,19 +124,19 @@ impl Beam {
         }
     }
 
-    /// Returns a box that the rays enter wherever rays that they stand for enter this one.
+    /// Returns a larger box. If an exact ray enters the original box, its rounded ray enters the larger one.
     #[inline(always)]
     pub fn grown(&self, Aabb { low, high }: &Aabb) -> Aabb {
         let mut slack = self.slack;
         if self.swerve > 0.0 {
-            // To a point of the box it is less than four times the largest of all coordinates.
+            // The distance to a point of the box is less than four times the largest of all coordinates.
             let farthest = larger(self.reach, larger(low.abs().max_element(), high.abs().max_element()));
             slack += 4.0 * self.swerve * farthest;
         }
         Aabb { low: *low - slack, high: *high + slack }
     }
 
-    /// Returns how far apart the rays are at a distance, in world units, along the axis where they are farthest apart.
+    /// Returns the maximum distance between the rays along an axis, at a distance from their origins, in world units.
     #[inline(always)]
     pub fn width(&self, distance: f64) -> f64 {
         self.width + distance * self.spread
@@ -152,10 +153,10 @@ pub struct Eight {
 }
 
 impl Eight {
-    /// Eight rays that are yet to be set.
+    /// Eight rays before [`set`](Self::set).
     pub const ZERO: Self = Self { origin: Vectors::ZERO, inverse: Vectors::ZERO };
 
-    /// Becomes the rays of a packet of eight.
+    /// Sets the rays to those of a packet of eight.
     #[inline(always)]
     pub fn set(&mut self, rays: RayPacket) {
         let rays = rays.first(LANES);
@@ -167,7 +168,7 @@ impl Eight {
     }
 }
 
-/// Returns the smallest and the largest of the numbers whose rays end beyond 0, of which `some` is one.
+/// Returns the minimum and the maximum of the numbers for rays that end beyond 0. `some` is one of these numbers.
 #[inline(always)]
 fn limits(of: &[f64], t_max: &[f64], some: f64) -> [f64; 2] {
     let (mut low, mut high) = ([some; LANES], [some; LANES]);

@@ -1,20 +1,20 @@
-//! Items in bins along an axis, and the cut between two bins that costs least by the surface area heuristic.
+//! Items in bins along an axis, and the cheapest cut between two bins by the surface area heuristic.
 
 use crate::geometry::aabb::{Aabb, smaller};
 use crate::geometry::bvh::node::finite;
 use crate::simd::cpu::kernels;
 use tabray_exact::scalar::per_axis;
 
-/// The number of bins along an axis; a set of objects is split between two bins.
+/// The number of bins along an axis. A set of objects is split between two bins.
 pub const BINS: usize = 16;
 
-/// The low corner of a box, and the high corner's negative, so that one minimum joins two boxes.
+/// The low corner of a box, and the negative of the high corner. With this sign, a minimum joins two boxes.
 pub type Limits = [f64; 6];
 
-/// The limits of nothing.
+/// The limits of an empty box.
 pub const NOTHING: Limits = [f64::INFINITY; 6];
 
-/// Returns the limits of two boxes together.
+/// Returns the joint limits of two boxes.
 #[inline(always)]
 pub fn join(one: &Limits, other: &Limits) -> Limits {
     let mut both = *one;
@@ -24,7 +24,7 @@ pub fn join(one: &Limits, other: &Limits) -> Limits {
     both
 }
 
-/// Returns half the surface area of a box, in square world units; infinite where it is not a finite number.
+/// Returns half the surface area of a box, in square world units, or infinity if it is NaN.
 #[inline(always)]
 pub fn half_area([a, b, c, d, e, f]: Limits) -> f64 {
     let (x, y, z) = (-d - a, -e - b, -f - c);
@@ -32,7 +32,7 @@ pub fn half_area([a, b, c, d, e, f]: Limits) -> f64 {
     if area.is_nan() { f64::INFINITY } else { area }
 }
 
-/// An object to be put into a tree.
+/// An object for a tree.
 #[derive(Clone, Default)]
 pub struct Item {
     /// The limits of its box, in world units.
@@ -42,7 +42,7 @@ pub struct Item {
 }
 
 impl Item {
-    /// Makes the item of the object of this index, with the limits of its box made finite.
+    /// Makes the item of the object with this index, with finite limits.
     pub fn new(index: usize, bounds: &Aabb) -> Self {
         let Aabb { low, high } = finite(bounds);
         Self { limits: [low.x, low.y, low.z, -high.x, -high.y, -high.z], index: index as u32 }
@@ -62,19 +62,19 @@ impl Item {
     }
 }
 
-/// The items whose centers lie in a bin.
+/// The items with centers in a bin.
 #[derive(Clone, Copy)]
 pub struct Bin {
     /// The number of items.
     pub count: u32,
-    /// The limits of their boxes together, in world units.
+    /// The joint limits of their boxes, in world units.
     pub limits: Limits,
     /// The limits of twice their centers, in world units.
     pub centers: Limits,
 }
 
 impl Bin {
-    /// A bin without items.
+    /// An empty bin.
     pub const EMPTY: Self = Self { count: 0, limits: NOTHING, centers: NOTHING };
 
     /// Returns the items of two bins.
@@ -93,20 +93,20 @@ impl Bin {
 pub struct Grid {
     /// The axis: 0, 1 or 2.
     pub axis: usize,
-    /// Where the first one begins, in twice the coordinates.
+    /// The start of the first bin, in twice the coordinates.
     pub low: f64,
-    /// The number of bins for each unit of twice the coordinates.
+    /// The number of bins per unit of twice the coordinates.
     pub scale: f64,
 }
 
 impl Grid {
-    /// Returns the bin in which an item's center lies.
+    /// Returns the bin of an item's center.
     #[inline(always)]
     fn bin(self, item: &Item) -> usize {
         (self.place(item) as u8).min(BINS as u8 - 1) as usize
     }
 
-    /// Returns where an item's center lies, in bins.
+    /// Returns the position of an item's center, in bins.
     #[inline(always)]
     pub fn place(self, item: &Item) -> f64 {
         (item.center(self.axis) - self.low) * self.scale
@@ -126,8 +126,7 @@ kernels! {
         bins
     }
 
-    /// Returns the cheapest cut between two bins, and the objects on each side of the cut; `None` where no cost is
-    /// finite.
+    /// Returns the cheapest cut between two bins, with the objects on each side of it, or `None` if no cost is finite.
     pub fn best_cut(bins: &[Bin; BINS]) -> Option<(usize, [Bin; 2])> {
         // The probability that a ray enters a box is proportional to its surface area.
         let cost = |(count, limits): (u32, Limits)| f64::from(count) * half_area(limits);

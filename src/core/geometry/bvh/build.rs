@@ -1,9 +1,9 @@
 //! Building a hierarchy, top down by the surface area heuristic over bins (Wald, "On fast Construction of SAH-based
 //! Bounding Volume Hierarchies", 2007), on all threads.
 //!
-//! A node's objects are split in two, then the largest part is split, until there are eight parts or all parts fit into
-//! a node each. The result depends on the boxes and their order alone, not on the number of threads: minima, maxima and
-//! counts have no order, and each part is sorted by one thread.
+//! A node's objects are split in two, then the largest part is split, until there are eight parts or each part fits
+//! into a node. The result only depends on the boxes and their order, not on the number of threads: minima, maxima and
+//! counts have no order, and one thread sorts each part.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::bins::{BINS, Bin, Grid, Item, Limits, NOTHING, best_cut, binned, half_area, join};
@@ -16,23 +16,23 @@ use std::mem::take;
 use std::sync::Mutex;
 use tabray_exact::scalar::per_axis;
 
-/// The number of objects from which on a part is built by a thread of its own.
+/// The number of objects from which on a part is built by its own thread.
 const LARGE: usize = 4096;
 
-/// From this level on, parts are halved by the number of objects, so that no scene makes the tree too deep.
+/// From this level on, parts are halved by the number of objects, which limits the depth of the tree.
 const DEEP: usize = 40;
 
-/// Nodes and objects, each node's children in a row. Node 0 is the root.
+/// Nodes and objects, with each node's children in consecutive places. Node 0 is the root.
 #[derive(Default)]
 pub struct Parts {
     pub nodes: Vec<Node>,
     pub objects: Vec<u32>,
 }
 
-/// Builds the nodes of a hierarchy of objects, whose boxes `bounds` returns.
+/// Builds the nodes of a hierarchy of objects. `bounds` returns their boxes.
 pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
     let mut items = parallel::filled(count, LARGE, |index| Item::new(index, &bounds(index)));
-    // What the boxes are taken from may be as large as the items.
+    // The data for the boxes may be as large as the items.
     drop(bounds);
     let mut parts = Parts::default();
     if !items.is_empty() {
@@ -42,7 +42,7 @@ pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
     parts
 }
 
-/// Some items, their limits, and those of twice their centers.
+/// Some items, their joint limits, and those of twice their centers.
 #[derive(Default)]
 struct ItemSet<'i> {
     items: &'i mut [Item],
@@ -75,7 +75,7 @@ impl<'i> ItemSet<'i> {
 }
 
 impl Parts {
-    /// Makes the node of this index the root of the tree of some items.
+    /// Makes the node with this index the root of the tree of some items.
     fn add(&mut self, part: ItemSet, index: usize, depth: usize) {
         let mut inner = divide(part, depth);
         inner.sort_by_key(|part| part.items.len() == 1);
@@ -111,7 +111,7 @@ impl Parts {
         }
     }
 
-    /// Appends a tree, with its root as the node of this index.
+    /// Appends a tree, with the node of this index as its root.
     fn append(&mut self, mut part: Self, root: usize) {
         // The root moves to its place, and the other nodes are added after the existing ones.
         let (nodes, objects) = (self.nodes.len() as u32 - 1, self.objects.len() as u32);
@@ -132,7 +132,7 @@ impl Parts {
 fn divide(whole: ItemSet, depth: usize) -> Vec<ItemSet> {
     let mut parts = Vec::with_capacity(WIDTH);
     parts.push(whole);
-    // While there is room, the largest part that does not fit into a node is split.
+    // While there is room, the largest part that is too large for a node is split.
     while parts.len() < WIDTH {
         let size = |part: &ItemSet| match part.items.len() {
             len if len <= WIDTH => -1.0,
@@ -144,7 +144,7 @@ fn divide(whole: ItemSet, depth: usize) -> Vec<ItemSet> {
         parts[largest] = one;
         parts.insert(largest + 1, other);
     }
-    // Where there is room for all items of a part, each is a child.
+    // If there is room for all items of a part, each becomes a child.
     loop {
         let room = WIDTH - parts.len();
         let size = |part: &ItemSet| match part.items.len() {
@@ -163,14 +163,14 @@ fn divide(whole: ItemSet, depth: usize) -> Vec<ItemSet> {
     parts
 }
 
-/// Returns the index of the largest part, the first of equal ones. Parts of negative size are left out.
+/// Returns the index of the largest part, the first of equal ones. Parts with a negative size are ignored.
 fn largest(parts: &[ItemSet], size: impl Fn(&ItemSet) -> f64) -> Option<usize> {
     let sizes = parts.iter().map(size).enumerate().filter(|(_, size)| *size >= 0.0);
     let largest = sizes.reduce(|one, other| if other.1 > one.1 { other } else { one });
     largest.map(|(index, _)| index)
 }
 
-/// Returns what some work returns for each chunk of many items.
+/// Applies a function to each chunk of many items, on all threads.
 fn chunks<T: Send>(items: &[Item], work: impl Fn(&[Item]) -> T + Sync) -> Vec<T> {
     let chunks: Vec<_> = items.chunks(LARGE).collect();
     parallel::map(chunks.len(), |chunk| work(chunks[chunk]))
@@ -203,16 +203,17 @@ fn split(part: ItemSet, depth: usize) -> [ItemSet; 2] {
     })
 }
 
-/// The number of items of a block of [`partition`].
+/// The number of items in a block of [`partition`].
 const BLOCK: usize = 64;
 
 /// Moves the items that satisfy a condition before the others, and returns their number.
 ///
-/// The items on the wrong side are listed a block at a time, without branches, as no processor predicts on which side an
-/// item lies (Edelkamp and Weiss, "BlockQuicksort", 2016).
+/// The items on the wrong side are listed a block at a time, without branches, because no processor predicts an item's
+/// side (Edelkamp and Weiss, "BlockQuicksort", 2016).
 fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
     let (mut start, mut end) = (0, items.len());
-    // The places of such items, from the start and from the end, and which of the lists are still to be swapped.
+    // The places of such items, from the start and from the end, and the ranges of the lists that are still to be
+    // swapped.
     let [mut low, mut high] = [[0_u8; BLOCK]; 2];
     let [mut lows, mut highs] = [0..0, 0..0];
     while end - start >= 2 * BLOCK {
@@ -257,7 +258,7 @@ fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
 mod tests {
     use super::*;
 
-    /// Returns the number of nodes on the longest way down from a node.
+    /// Returns the number of nodes on the longest path down from a node.
     fn levels(nodes: &[Node], index: usize) -> usize {
         let node = &nodes[index];
         let below = (0..node.nodes.into()).map(|child| levels(nodes, node.first_node as usize + child)).max();

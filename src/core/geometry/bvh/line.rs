@@ -1,4 +1,4 @@
-//! Searches of a hierarchy along a line whose numbers are intervals, for proofs: they share no arithmetic with the
+//! Searches of a hierarchy along a line with interval coefficients, for proofs. They share no arithmetic with the
 //! search that renders images.
 
 use crate::geometry::bvh::beam::{HIGH, LOW};
@@ -8,29 +8,29 @@ use crate::geometry::sight::Line;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
-/// A line as boxes are tested against it, axis by axis.
+/// A line prepared for tests against boxes, axis by axis.
 struct Slabs {
     axes: [Axis; 3],
 }
 
-/// What is known of a line along one axis.
+/// A line along one axis.
 enum Axis {
-    /// The line rises, in a mirror if it falls: bounds of its start, and of the t that the line takes per unit. All
-    /// numbers are positive.
+    /// The line rises, or falls if `is_mirrored`, which negates its coordinates. Bounds of its start, and of the t per
+    /// unit, which is positive.
     Rises { is_mirrored: bool, origin: Interval, inverse: Interval },
-    /// It stays where it starts.
+    /// The line stays at its start.
     Level(Interval),
-    /// It may rise or fall.
+    /// The line may rise or fall.
     Unknown,
 }
 
-/// Returns a number that is certainly not above the one whose rounding to the nearest this is.
+/// Returns a lower bound of the exact number, given that number rounded to nearest.
 #[inline(always)]
 fn down(rounded: f64) -> f64 {
     rounded - (rounded.abs() * f64::EPSILON + f64::MIN_POSITIVE)
 }
 
-/// Returns a number that is certainly not below the one whose rounding to the nearest this is.
+/// Returns an upper bound of the exact number, given that number rounded to nearest.
 #[inline(always)]
 fn up(rounded: f64) -> f64 {
     rounded + (rounded.abs() * f64::EPSILON + f64::MIN_POSITIVE)
@@ -44,7 +44,7 @@ impl Axis {
         let (origin, dir, is_mirrored) =
             if dir.high < 0.0 { (-origin, -dir, true) } else { (origin, dir, false) };
         let inverse = Interval::constant(1.0) / dir;
-        // The inverse of a very small direction is no number that helps.
+        // The inverse of a tiny component may be infinite.
         match dir.low > 0.0 && inverse.low > 0.0 && inverse.high < f64::INFINITY {
             true => Self::Rises { is_mirrored, origin, inverse },
             false => Self::Unknown,
@@ -53,8 +53,8 @@ impl Axis {
 }
 
 impl Slabs {
-    /// Returns lower bounds of the t, from 0 on, at which the line enters the boxes of a node's children, infinite for
-    /// boxes that the line certainly misses or enters only after `end`.
+    /// Returns lower bounds of the t, from 0 on, at which the line enters the boxes of a node's children. They are
+    /// infinite for boxes that the line certainly misses or enters after `end`.
     #[inline(always)]
     fn entered(&self, node: &Node, end: f64) -> [f64; WIDTH] {
         let (mut enters, mut leaves) = ([0.0; WIDTH], [end; WIDTH]);
@@ -78,7 +78,7 @@ impl Slabs {
                         let (before, behind) = (down(low - origin.high), up(high - origin.low));
                         let enter = down(before * if before > 0.0 { inverse.low } else { inverse.high });
                         let leave = up(behind * if behind > 0.0 { inverse.high } else { inverse.low });
-                        // What is no number decides nothing.
+                        // The comparisons are false for NaN.
                         enters[child] = if enter > enters[child] { enter } else { enters[child] };
                         leaves[child] = if leave < leaves[child] { leave } else { leaves[child] };
                     }
@@ -93,9 +93,8 @@ impl Slabs {
 }
 
 impl Bvh {
-    /// Visits the objects whose boxes a line may enter, from t = 0 on, roughly the nearer ones first. `visit` is given an
-    /// object and returns the t beyond which no more need be visited. It is behind `dyn`, so that the search is compiled
-    /// once.
+    /// Visits the objects whose boxes a line may enter, from t = 0 on, roughly nearest first. `visit` takes an object,
+    /// and returns the t beyond which objects no longer matter. It is behind `dyn` to compile the search only once.
     pub fn along(&self, line: &Line<Interval>, visit: &mut dyn FnMut(usize) -> f64) {
         let axes = [0, 1, 2].map(|axis| Axis::of(line.origin[axis], line.dir[axis]));
         let (slabs, mut end, mut ahead) = (Slabs { axes }, f64::INFINITY, Vec::with_capacity(64));
@@ -134,7 +133,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever intervals of [`Line::clip`] leave open is visited.
+        /// All boxes that [`Line::clip`] with intervals does not exclude are visited.
         #[test]
         fn no_box_that_a_line_may_enter_is_left_out(
             places in prop::collection::vec((-9..9, -9..9, -9..9, 0..3), 1..60),

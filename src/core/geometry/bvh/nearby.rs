@@ -1,20 +1,20 @@
-//! Searches of a hierarchy for the objects near a point, and for those whose boxes pass any test.
+//! Searches of a hierarchy for the objects near a point, and for those with boxes that pass a test.
 
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::bvh::tree::Bvh;
 use glam::DVec3;
 
 impl Bvh {
-    /// Visits the objects whose boxes are within a distance of a point, in world units, roughly the nearer ones first.
-    /// `visit` returns the distance beyond which no more need be visited; a negative number ends the search. It is behind
-    /// `dyn`, so that the search and its sorting are compiled once.
+    /// Visits the objects with boxes within a distance of a point, in world units, roughly nearest first. `visit`
+    /// returns the distance beyond which objects no longer matter. A negative number ends the search. It is behind
+    /// `dyn` to compile the search and its sorting only once.
     pub fn around(&self, at: DVec3, distance: f64, visit: &mut dyn FnMut(usize) -> f64) {
         let (mut limit, mut ahead) = (distance, Vec::new());
         if !self.nodes.is_empty() {
             ahead.push((0.0, true, 0));
         }
         while let Some((nearest, is_node, index)) = ahead.pop() {
-            // Near the point, the boxes' own slack is more than the rounding of distances; this slack is for far boxes.
+            // Near the point, the boxes' own slack exceeds the rounding of distances. This slack is for distant boxes.
             if nearest * (1.0 - SLACK) > limit {
                 continue;
             }
@@ -35,7 +35,7 @@ impl Bvh {
         }
     }
 
-    /// Visits the objects for which a test accepts their own box and all boxes around it.
+    /// Visits the objects whose own box and enclosing boxes all pass a test.
     pub fn within(&self, mut enters: impl FnMut(&Aabb) -> bool, mut visit: impl FnMut(usize)) {
         let mut ahead: Vec<_> = self.nodes.first().into_iter().collect();
         while let Some(node) = ahead.pop() {
@@ -60,7 +60,7 @@ mod tests {
     use crate::simd::soa::{LANES, Vectors};
     use std::ops::Range;
 
-    /// Boxes of size 0.5 at all places with whole coordinates from 0 to 9.
+    /// Returns boxes of size 0.5 at all integer coordinates from 0 to 9.
     fn boxes() -> Vec<Aabb> {
         let place = |index: u32| {
             DVec3::new(f64::from(index % 10), f64::from(index / 10 % 10), f64::from(index / 100))
@@ -85,7 +85,7 @@ mod tests {
             visited.sort_unstable();
             within.sort_unstable();
             let right: Vec<_> = (0..boxes.len()).filter(|index| away(&boxes[*index]) <= distance).collect();
-            // Boxes are a little larger in the tree.
+            // Boxes are slightly larger in the tree.
             assert!(right.iter().all(|object| visited.contains(object) && within.contains(object)), "{at}");
             assert!(
                 visited.iter().chain(&within).all(|object| away(&boxes[*object]) < distance + 0.2),
@@ -113,14 +113,14 @@ mod tests {
             }
         }
         let tree = Bvh::new(&boxes());
-        // Past the first box at 0.51, through rows of boxes.
+        // The ray passes beside the first box, at 0.51, through rows of boxes.
         let ray = Ray { origin: DVec3::new(0.51, 0.25, -2.0), dir: DVec3::Z };
         let (origin, dir) = (Vectors::<LANES>::of(ray.origin), Vectors::<LANES>::of(ray.dir));
         let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
         for (drift, all) in [
             (RayError::NONE, 0),
             (RayError { origin: 0.02, dir: 0.0 }, 10),
-            // Enough from z = 6 on.
+            // This is enough from z = 6 on.
             (RayError { origin: 0.0, dir: 0.00126 }, 4),
         ] {
             for cpu in Cpu::all() {

@@ -1,4 +1,4 @@
-//! The nodes of a hierarchy: eight boxes in 88 bytes, tested at a time.
+//! The nodes of a hierarchy: eight boxes in 88 bytes, tested together.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::bvh::beam::{Beam, HIGH, LOW};
@@ -7,61 +7,62 @@ use glam::DVec3;
 /// The maximum number of children of a node.
 pub const WIDTH: usize = 8;
 
-/// The number of steps of the grid on which the planes of a node's boxes lie, along each axis.
+/// The number of steps, along each axis, of the grid for the planes of a node's boxes.
 const STEPS: f64 = 255.0;
 
-/// The largest magnitude of a coordinate; infinite boxes end there. Differences and sums of such numbers are finite.
+/// The maximum magnitude of a coordinate, which limits infinite boxes. Differences and sums of such numbers are finite.
 const FARTHEST: f64 = 1e300;
 
 /// Up to eight children, each a node or an object, with their boxes.
 ///
-/// A box is given by the numbers of its planes on a grid that begins at `corner` and whose steps are powers of two, so
-/// that a plane's coordinate is exact but for the last sum. The planes are those next to the box on its outer sides.
+/// A box is given by the numbers of its planes on a grid that begins at `corner`. The steps of the grid are powers of
+/// two, and so a plane's coordinate is exact except for the last sum. The planes are the nearest ones on the box's
+/// outer sides.
 #[derive(PartialEq)]
 pub struct Node {
     corner: DVec3,
     /// The index of the first child that is a node. The others follow it.
     pub first_node: u32,
-    /// The position of the first child that is an object, among the hierarchy's objects. The others follow it.
+    /// The position of the first child that is an object, in the hierarchy's list of objects. The others follow it.
     pub first_object: u32,
-    /// The numbers of the low and of the high planes, for each axis.
+    /// The numbers of the low and the high planes, for each axis.
     planes: [[[u8; WIDTH]; 2]; 3],
     /// The binary logarithms of the steps, in world units.
     exponents: [i16; 3],
-    /// The number of children that are nodes, which come before the others.
+    /// The number of children that are nodes. They come first.
     pub nodes: u8,
     /// The number of children.
     children: u8,
 }
 
 /// The distances at which a beam enters the boxes of a node's children, in world units, and a byte for each child, the
-/// lowest one for the first: 1 where it enters the box, and else 0.
+/// lowest one for the first: 1 if the beam enters the box, and otherwise 0.
 pub type Entered = ([f64; WIDTH], u64);
 
-/// The planes of a node's boxes, as a beam meets them: near and far ones, for each axis.
+/// The near and the far planes of a node's boxes along a beam, for each axis.
 struct Planes<'n> {
     numbers: [[&'n [u8; WIDTH]; 3]; 2],
     /// The distances to the planes of number 0, in world units along the beam.
     starts: [[f64; 4]; 2],
-    /// The distances from one plane to the next.
+    /// The distances between consecutive planes.
     paces: [[f64; 4]; 2],
 }
 
 impl Planes<'_> {
-    /// Returns the distance to a plane of a child, in world units along the beam; NaN where nothing is known of it.
+    /// Returns the distance to a plane of a child, in world units along the beam, or NaN if nothing is known of it.
     #[inline(always)]
     fn distance(&self, side: usize, axis: usize, child: usize) -> f64 {
         self.starts[side][axis] + f64::from(self.numbers[side][axis][child]) * self.paces[side][axis]
     }
 }
 
-/// The planes through which a beam enters boxes, unless it is mixed.
+/// The planes where a beam enters boxes, unless it is mixed.
 const NEAR: usize = 0;
-/// The planes through which it leaves them.
+/// The planes where the beam leaves them.
 const FAR: usize = 1;
 
 impl Node {
-    /// A node that is yet to be made.
+    /// A node before its construction.
     pub const EMPTY: Self = Self {
         corner: DVec3::ZERO,
         first_node: 0,
@@ -74,8 +75,8 @@ impl Node {
 
     /// Makes a node of one to eight children with these boxes.
     ///
-    /// Each box grows by [`SLACK`] times the largest coordinate of all of them, which is more than the rounding of the
-    /// planes and of the distances to them, and of the coordinates of hits.
+    /// Each box grows by [`SLACK`] times the largest coordinate of all of them. This exceeds the rounding of the planes
+    /// and of the distances to them, and of the coordinates of hits.
     pub fn new(boxes: &[Aabb]) -> Self {
         let whole = boxes.iter().fold(Aabb::EMPTY, |all, one| all.and(one));
         let slack = SLACK * larger(whole.low.abs().max_element(), whole.high.abs().max_element());
@@ -83,8 +84,8 @@ impl Node {
         for axis in 0..3 {
             let corner = node.corner[axis];
             let size = whole.high[axis] + slack - corner;
-            // The least power of two such that `STEPS` of it are at least the size, or the next one where the rounding
-            // of the last plane requires it.
+            // The smallest power of two with `STEPS` times it at least the size, or the next one if the rounding of the
+            // last plane requires it.
             let mut exponent = (exponent(size / STEPS) + 1).clamp(-1022, 1015);
             while corner + STEPS * exp2(exponent) < whole.high[axis] + slack {
                 exponent += 1;
@@ -93,8 +94,9 @@ impl Node {
             let (step, inverse) = (exp2(exponent), exp2(-exponent));
             for (child, bounds) in boxes.iter().enumerate() {
                 let (low, high) = (bounds.low[axis] - slack, bounds.high[axis] + slack);
-                // The numbers are rounded down. Where rounding leaves a plane on the wrong side of the box, the next one is
-                // on the right side: a step is at least 2 / 255 of the slack, more than 30 units in the last place of the corner.
+                // The numbers are rounded down. If rounding leaves a plane on the wrong side of the box, the next one
+                // is on the right side: a step is at least 2 / 255 of the slack, more than 30 units in the last place
+                // of the corner.
                 let number = |plane: f64| f64::from(((plane - corner) * inverse) as u8);
                 let (below, above) = (number(low), number(high));
                 let below = below - f64::from(u8::from(corner + below * step > low));
@@ -106,7 +108,7 @@ impl Node {
         node
     }
 
-    /// Tests the children's boxes against a beam that ends at `t_max`, in world units. Where a child is left out, no ray
+    /// Tests the children's boxes against a beam that ends at `t_max`, in world units. If a child is excluded, no ray
     /// of the beam enters its box before that.
     #[inline(always)]
     pub fn entered(&self, beam: &Beam, t_max: f64) -> Entered {
@@ -115,7 +117,7 @@ impl Node {
         }
         let planes = self.planes(beam);
         let (mut enters, mut is_entered) = ([0.0; WIDTH], [0; WIDTH]);
-        // One loop over all planes of a child. The compiler processes eight children at a time.
+        // A single loop covers all planes of a child. The compiler vectorizes it over eight children.
         for child in 0..WIDTH {
             let mut enter = larger(planes.distance(NEAR, 0, child), 0.0);
             enter = larger(planes.distance(NEAR, 1, child), enter);
@@ -129,7 +131,7 @@ impl Node {
         self.listed(enters, is_entered)
     }
 
-    /// Tests the children's boxes against a beam some of whose rays rise along an axis where others fall.
+    /// Tests the children's boxes against a beam with rays that rise along an axis and others that fall.
     #[inline(always)]
     fn entered_by_mixed(&self, beam: &Beam, t_max: f64) -> Entered {
         let (mut enters, mut leaves, mut is_entered) = ([0.0; WIDTH], [t_max; WIDTH], [0; WIDTH]);
@@ -149,13 +151,13 @@ impl Node {
         self.listed(enters, is_entered)
     }
 
-    /// Lists the children that are entered.
+    /// Returns the distances, and the bytes of existing children.
     #[inline(always)]
     fn listed(&self, enters: [f64; WIDTH], is_entered: [u8; WIDTH]) -> Entered {
         (enters, u64::from_le_bytes(is_entered) & (u64::MAX >> (u64::BITS - 8 * u32::from(self.children))))
     }
 
-    /// Returns the planes of all children, as a beam meets them.
+    /// Returns the planes of all children along a beam.
     #[inline(always)]
     fn planes(&self, beam: &Beam) -> Planes<'_> {
         let DVec3 { x, y, z } = self.corner;
@@ -175,7 +177,7 @@ impl Node {
         Planes { numbers, starts, paces }
     }
 
-    /// Returns whether a child is a node, and its place among all nodes or among all objects.
+    /// Returns whether a child is a node, and its place among all nodes or all objects.
     #[inline(always)]
     pub fn child(&self, child: u32) -> (bool, u32) {
         let nodes = u32::from(self.nodes);
@@ -201,14 +203,14 @@ impl Node {
         Aabb { low: at(LOW), high: at(HIGH) }
     }
 
-    /// Returns the coordinates of the low or of the high planes of all children along an axis.
+    /// Returns the coordinates of the low or the high planes of all children along an axis.
     #[inline(always)]
     pub fn planes_of(&self, axis: usize, side: usize) -> [f64; WIDTH] {
         let (corner, step) = (self.corner[axis], exp2(self.exponents[axis]));
         self.planes[axis][side].map(|number| corner + f64::from(number) * step)
     }
 
-    /// Returns the largest size of the node along any axis, in world units, to a factor of 2.
+    /// Returns the maximum size of the node along an axis, in world units, up to a factor of 2.
     #[inline(always)]
     pub fn size(&self) -> f64 {
         let [x, y, z] = self.exponents;
@@ -216,15 +218,15 @@ impl Node {
     }
 }
 
-/// Returns a box whose coordinates are finite and in order, so that it has planes on a grid.
+/// Returns a box with finite coordinates in order, which has planes on a grid.
 pub fn finite(bounds: &Aabb) -> Aabb {
-    // A coordinate that is not a number may lie anywhere.
+    // A NaN coordinate may be anywhere.
     let low = bounds.low.map(|low| if low > -FARTHEST { low.min(FARTHEST) } else { -FARTHEST });
     let high = bounds.high.map(|high| if high < FARTHEST { high.max(-FARTHEST) } else { FARTHEST });
     Aabb { low: low.min(high), high: low.max(high) }
 }
 
-/// Returns the binary logarithm of a number that is not negative, rounded down; -1023 for 0.
+/// Returns the binary logarithm of a nonnegative number, rounded down, or -1023 for 0.
 fn exponent(number: f64) -> i16 {
     (number.to_bits() >> 52) as i16 - 1023
 }
@@ -235,19 +237,18 @@ fn exp2(exponent: i16) -> f64 {
     f64::from_bits(((i64::from(exponent) + 1023) as u64) << 52)
 }
 
-/// Which children of a node are visited first: those whose boxes a ray enters first, or those whose boxes it enters last.
+/// The order of visits to the children of a node: by the distance at which a ray enters their boxes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// For the nearest hit, behind which nothing is visited.
+    /// Nearest first, for the nearest hit. Nothing behind it is visited.
     Nearest,
-    /// For any hit of a ray that leaves a surface: the many boxes around its origin hold the surface that it leaves,
-    /// and seldom the one that it hits.
+    /// Farthest first, for any hit of a ray that leaves a surface. The many boxes around its origin contain that
+    /// surface, and seldom the hit.
     Farthest,
 }
 
 impl Order {
-    /// Tells whether a child that a ray enters at one distance is visited after a child that the ray enters at another
-    /// distance.
+    /// Tells whether a child entered at the distance `one` is visited after a child entered at `other`.
     #[inline(always)]
     pub(super) fn is_later(self, one: f64, other: f64) -> bool {
         match self {

@@ -1,8 +1,8 @@
 //! Searches of a hierarchy for packets of rays.
 //!
-//! As long as rays are close together, one test of a beam that contains them all rules out boxes for all of them, eight
-//! boxes at a time. A packet starts as beams of [`PART`] rays. Where a beam has become wider than the boxes, it is split
-//! into beams of eight rays, and these into single rays.
+//! While rays are close together, a test of a beam that contains them all excludes boxes for all of them, eight boxes
+//! at once. A packet starts as beams of [`PART`] rays. A beam that is wider than the boxes is split into beams of eight
+//! rays, and these into single rays.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::bvh::beam::{Beam, Eight};
@@ -17,41 +17,40 @@ use std::ops::Range;
 /// The number of rays of the beams that a packet starts with.
 const PART: usize = 64;
 
-/// The width of a beam, as a multiple of a node's size, from which on the beam is split. Between 0.5 and 2, frames of
-/// 10^3 to 10^6 objects take the same time to a tenth.
+/// The width of a beam, as a multiple of a node's size, from which on the beam is split. Between 0.5 and 2, the times
+/// of frames with 10^3 to 10^6 objects vary by less than a tenth.
 const WIDE: f64 = 1.0;
 
 /// A byte of 1 for each of eight rays.
 const ALL: u64 = u64::from_le_bytes([1; LANES]);
 
-/// What is done with the objects that a packet's rays may hit.
+/// A visitor of the objects that a packet's rays may hit.
 ///
-/// `t_max` holds the distance at which each ray of the packet ends, in world units, which a test may replace by a
-/// lesser distance. It is handed over, and the visitor is behind `dyn`, so that the search is compiled once for all
-/// visitors.
+/// `t_max` has the end of each ray of the packet, as a distance in world units. A test may reduce it. It is a
+/// parameter, and the visitor is behind `dyn`, to compile the search only once for all visitors.
 pub trait PacketVisitor {
-    /// Tests the rays in a range of lanes against the object of this index. The range is as long as a multiple of
+    /// Tests the rays in a range of lanes against the object with this index. The length of the range is a multiple of
     /// [`LANES`], and no ray is tested against one object twice, here or alone.
     fn test(&mut self, object: usize, lanes: Range<usize>, t_max: &mut [f64]);
 
-    /// Tests the ray in one lane against the object of this index.
+    /// Tests the ray in one lane against the object with this index.
     fn test_one(&mut self, object: usize, lane: usize, t_max: &mut [f64]);
 
-    /// Returns the largest number of rays that are tested more quickly one by one than eight at a time.
+    /// Returns the maximum number of rays for which single tests are faster than tests of eight.
     fn few(&self) -> u32 {
         0
     }
 
-    /// Returns the order in which objects are visited.
+    /// Returns the order of visits.
     fn order(&self) -> Order {
         Order::Nearest
     }
 }
 
 kernels! {
-    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly in the visitor's order. A
-    /// ray that ends at 0 or less is not searched for. With a drift, objects that rays within the drift may hit are
-    /// visited as well.
+    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly in the visitor's order.
+    /// Rays that end at 0 or less are ignored. With a drift, objects that rays within the drift may hit are visited as
+    /// well.
     pub fn visit(
         tree: &Bvh, stack: &mut Stack, rays: RayPacket, drift: RayError, t_max: &mut [f64], visitor: &mut dyn PacketVisitor
     ) {
@@ -74,15 +73,14 @@ struct Search<'s, 'v> {
     rays: RayPacket<'s>,
     drift: RayError,
     order: Order,
-    /// The distances at which they end, in world units.
+    /// The ends of the rays, as distances in world units.
     t_max: &'s mut [f64],
     visitor: &'s mut (dyn PacketVisitor + 'v),
-    /// The part's rays, eight by eight, as soon as they were needed.
+    /// The part's rays in groups of eight, set on first use.
     eights: &'s mut Vec<Eight>,
-    /// A bit for each eight that is set.
+    /// A bit for each group that is set.
     is_set: u64,
-    /// The bounds of each group of eight rays, and after them each ray as a beam of its own. They are computed when
-    /// they are first needed.
+    /// The bounds of each group of eight rays, followed by those of each single ray. They are computed on first use.
     beams: &'s mut Vec<Option<Beam>>,
     /// The first lane of the part, and the number of its lanes.
     start: usize,
@@ -90,8 +88,8 @@ struct Search<'s, 'v> {
 }
 
 impl Search<'_, '_> {
-    /// Searches for a part of this many rays. The search is inlined into the kernel, and each of its functions is called
-    /// in one place, so that there is one copy of it.
+    /// Searches for a part of this many rays. The search is inlined into the kernel, and each of its functions is
+    /// called in one place, which gives a single copy.
     #[inline(always)]
     fn part(mut self, count: usize) {
         let lanes = self.start..self.start + count;
@@ -139,7 +137,7 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Searches a subtree for those of eight rays that enter its box, given a byte for each.
+    /// Searches a subtree for the rays of a group of eight that enter its box, given a byte for each.
     #[inline(always)]
     fn eight(&mut self, first: usize, root: u32, entering: u64) {
         let few = self.visitor.few();
@@ -149,7 +147,7 @@ impl Search<'_, '_> {
         if entering.count_ones() > few && self.beams[eight].is_none() {
             self.beams[eight] = self.beam(lanes.clone());
         }
-        // Rays of it may have ended since, which leaves it a bound of the others.
+        // Some of its rays may have ended since then. It still bounds the others.
         let beam = self.beams[eight];
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
         let mut known = Some(entering);
@@ -163,7 +161,7 @@ impl Search<'_, '_> {
             let is_wide = !is_object
                 && beam.is_none_or(|beam| beam.width(enters) > WIDE * self.tree.nodes[child as usize].size());
             let entering = match (known.take(), &beam) {
-                // Of the root it is known which rays enter.
+                // For the root, the entering rays are known.
                 (Some(entering), _) => entering,
                 (None, Some(beam)) if is_object || is_wide || few > 0 => {
                     self.entering(first, &self.bounds(place, beam))
@@ -185,7 +183,7 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Searches a subtree for each of eight rays that enters its box, given a byte for each.
+    /// Searches a subtree for each ray of a group of eight that enters its box, given a byte for each.
     #[inline(always)]
     fn each(&mut self, first: usize, root: u32, mut entering: u64) {
         while entering != 0 {
@@ -198,7 +196,7 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn one(&mut self, lane: usize, root: u32) {
         let eights = self.count / LANES;
-        // Most parts need none of these.
+        // Most parts need no single rays.
         if self.beams.len() == eights {
             self.beams.resize(eights + self.count, None);
         }
@@ -230,7 +228,7 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Returns the distance at which the last of some rays ends.
+    /// Returns the maximum distance of the ends of some rays.
     #[inline(always)]
     fn most(&self, lanes: Range<usize>) -> f64 {
         let mut most = [0.0; LANES];
@@ -245,15 +243,15 @@ impl Search<'_, '_> {
         if most > 0.0 { most } else { -1.0 }
     }
 
-    /// Returns the box of a child of a node, grown by the slack of the rays.
+    /// Returns the box of a child of a node, enlarged by the slack of the rays.
     #[inline(always)]
     fn bounds(&self, place: u32, beam: &Beam) -> Aabb {
         let (node, child) = (place as usize / WIDTH, place as usize % WIDTH);
         beam.grown(&self.tree.nodes[node].bounds(child))
     }
 
-    /// Returns a byte for each of eight rays, the lowest one for the first: 1 where it enters a box before its end, and
-    /// else 0.
+    /// Returns a byte for each of eight rays, the lowest one for the first: 1 if the ray enters a box before its end,
+    /// and otherwise 0.
     #[inline(always)]
     fn entering(&mut self, first: usize, bounds: &Aabb) -> u64 {
         let eight = (first - self.start) / LANES;
@@ -268,7 +266,8 @@ impl Search<'_, '_> {
         for lane in 0..LANES {
             let (from, inverse) = (origin.get(lane), inverse.get(lane));
             let (a, b) = ((low - from) * inverse, (high - from) * inverse);
-            // Only rays without a direction are NaN, as no ray starts on a plane that has a slack; they enter.
+            // Only a ray without a direction gives NaN, because no ray starts on a plane with a slack. Such a ray
+            // counts as entering.
             let mut enter = larger(smaller(a.x, b.x), 0.0);
             enter = larger(smaller(a.y, b.y), enter);
             enter = larger(smaller(a.z, b.z), enter);

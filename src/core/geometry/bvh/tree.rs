@@ -11,35 +11,35 @@ use std::mem::take;
 /// A hierarchy of bounding boxes, with up to eight children in each node.
 ///
 /// Searches visit each object whose box a ray enters before its end, roughly in an `Order`. Boxes need no slack for
-/// rounding: the search adds a slack that covers the rounding of the ray as well.
+/// rounding, because the search adds one, which also covers the rounding of the ray.
 pub struct Bvh {
     pub(super) nodes: Vec<Node>,
-    /// The objects' indices, node by node; empty where each is its place.
+    /// The objects' indices, node by node, or none if each index is the object's place.
     objects: Vec<u32>,
 }
 
-/// A child of a node that is still to be visited.
+/// A child of a node that waits for its visit.
 #[derive(Clone, Copy)]
 pub(super) struct Ahead {
     /// The distance at which the ray enters the child's box, in world units.
     pub enters: f64,
-    /// The index of a node, or with [`OBJECT`] the position of an object.
+    /// The index of a node, or the position of an object with [`OBJECT`] set.
     pub child: u32,
     /// For objects, eight times the index of the parent, plus the child's place in the parent.
     pub place: u32,
 }
 
-/// The bit that tells an object from a node.
+/// The bit that marks an object.
 pub(super) const OBJECT: u32 = 1 << 31;
 
-/// The number of objects for which [`Ahead::place`] has room.
+/// The limit for the number of objects, for which [`Ahead::place`] has room.
 const MOST: usize = 1 << 29;
 
-/// The scratch space of searches, which is reused from one search to the next.
+/// The scratch space of searches, reused between them.
 #[derive(Default)]
 pub struct Stack {
-    /// The children that are still to be visited, the next one last. The list grows as needed: nested searches for a
-    /// packet, for eight rays and for one ray each add up to seven children per level of the tree.
+    /// The children that wait for their visits, the next one last. Nested searches for a packet, for eight rays and for
+    /// one ray each add up to seven children per level of the tree.
     pub(super) ahead: Vec<Ahead>,
     /// The current rays of a packet.
     pub(super) eights: Vec<Eight>,
@@ -54,16 +54,16 @@ impl Bvh {
     ///
     /// # Panics
     ///
-    /// If there are 2^29 boxes or more.
+    /// Panics for 2^29 boxes or more.
     pub fn new(boxes: &[Aabb]) -> Self {
         Self::of(boxes.len(), |index| boxes[index])
     }
 
-    /// Builds the hierarchy of as many objects as `count`, as [`new`](Self::new) does. `bounds` returns an object's box.
+    /// Builds the hierarchy of `count` objects, like [`new`](Self::new). `bounds` returns an object's box.
     ///
     /// # Panics
     ///
-    /// If there are 2^29 boxes or more.
+    /// Panics for 2^29 boxes or more.
     pub fn of(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Self {
         assert!(count < MOST, "{count} boxes are too many");
         let build::Parts { mut nodes, mut objects } = build::build(count, bounds);
@@ -72,7 +72,7 @@ impl Bvh {
         Self { nodes, objects }
     }
 
-    /// Replaces each object's index, initially its position in the list of boxes.
+    /// Replaces each object's index, which is initially its position in the list of boxes.
     pub fn rename(&mut self, name: impl Fn(u32) -> u32) {
         self.objects.iter_mut().for_each(|object| *object = name(*object));
     }
@@ -88,7 +88,7 @@ impl Bvh {
         if self.objects.is_empty() { place as usize } else { self.objects[place as usize] as usize }
     }
 
-    /// Returns the memory that the hierarchy takes, in bytes.
+    /// Returns the memory of the hierarchy, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.objects[..])
     }
@@ -98,9 +98,9 @@ impl Bvh {
         self.nodes.len()
     }
 
-    /// Visits the objects whose boxes a ray enters before `t_max`, in world units, nearest boxes first. `visit` is given
-    /// an object's index and the current `t_max`, and returns the new one, which may be less. Objects whose boxes the
-    /// ray enters at `t_max` itself are visited, so that the caller can decide between equal distances.
+    /// Visits the objects whose boxes a ray enters before `t_max`, in world units, nearest boxes first. `visit` takes
+    /// an object's index and the current `t_max`, and returns the new one, which may be smaller. Objects whose boxes
+    /// the ray enters at `t_max` itself are also visited, which lets the caller decide between equal distances.
     pub fn closest(
         &self,
         cpu: Cpu,
@@ -112,7 +112,7 @@ impl Bvh {
         self.closest_within(cpu, stack, ray, RayError::NONE, t_max, visit);
     }
 
-    /// Visits the objects whose boxes any ray within a drift of one enters, as [`closest`](Self::closest) does.
+    /// Visits the objects whose boxes some ray within a drift of `ray` enters, like [`closest`](Self::closest).
     pub fn closest_within(
         &self,
         cpu: Cpu,
@@ -144,7 +144,7 @@ impl Bvh {
 }
 
 kernels! {
-    /// Visits objects along a ray, as [`Bvh::closest_within`] does.
+    /// Visits objects along a ray, like [`Bvh::closest_within`].
     fn search(
         tree: &Bvh, stack: &mut Stack, ray: &Ray, drift: RayError, t_max: f64, visit: &mut dyn FnMut(usize, f64) -> f64
     ) {
@@ -189,7 +189,7 @@ pub(super) fn descend(
     }
 }
 
-/// Pushes the children that are entered of a node of this index, the first one to be visited last.
+/// Pushes the entered children of the node with this index. The first one to visit comes last.
 #[inline(always)]
 pub(super) fn push(
     stack: &mut Vec<Ahead>,
@@ -208,7 +208,7 @@ pub(super) fn push(
             child: if is_node { place } else { place | OBJECT },
             place: WIDTH as u32 * index + child,
         };
-        // Few children are entered, and sorting them by insertion is quickest.
+        // Few children are entered, and insertion sort is fastest.
         let mut place = stack.len();
         stack.push(next);
         while place > start && order.is_later(next.enters, stack[place - 1].enters) {
@@ -229,7 +229,7 @@ mod tests {
     use proptest::prelude::*;
     use std::ops::Range;
 
-    /// Generates coordinates like those of scenes, 0 among them. `prop_oneof` would seed a generator of random numbers for
+    /// Generates coordinates like those of scenes, including 0. `prop_oneof` would seed a random number generator for
     /// each alternative, which takes far longer.
     fn number() -> impl Strategy<Value = f64> {
         (0..17, -1.0..1.0).prop_map(|(kind, part)| match kind {
@@ -244,7 +244,7 @@ mod tests {
         (number(), number(), number()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
     }
 
-    /// Generates a range of coordinates, some of them without ends.
+    /// Generates a range of coordinates, some of them infinite.
     fn extent() -> impl Strategy<Value = (f64, f64)> {
         (0..24, number(), 0.0..1.0).prop_map(|(kind, at, part)| match kind {
             0 => (at, f64::INFINITY),
@@ -262,7 +262,7 @@ mod tests {
             .prop_map(|(x, y, z)| Aabb { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) })
     }
 
-    /// The objects that a search visits, in order.
+    /// Returns the objects that a search visits, in order.
     fn visited(tree: &Bvh, cpu: Cpu, ray: &Ray, t_max: f64) -> Vec<usize> {
         let mut visited = Vec::new();
         tree.closest(cpu, &mut Stack::default(), ray, t_max, |object, t_max| {
@@ -272,7 +272,7 @@ mod tests {
         visited
     }
 
-    /// Tells whether a ray enters a box before `t_max` by more than rounding.
+    /// Tells whether a ray enters a box before `t_max`, by more than rounding.
     fn enters(ray: &Ray, t_max: f64, bounds: &Aabb) -> bool {
         let inverse = ray.dir.recip();
         let (mut enter, mut leave) = (0.0_f64, t_max);
@@ -289,7 +289,7 @@ mod tests {
         enter <= leave
     }
 
-    /// Counts how often each ray is tested against each object.
+    /// Counts the tests of each ray against each object.
     struct Counter {
         tests: Vec<Vec<u32>>,
     }
@@ -336,7 +336,7 @@ mod tests {
             let mut t_max = vec![0.0; count];
             for lane in 0..count {
                 let (one, other, ends) = ways[lane.min(ways.len() - 1)];
-                // Rays near one another, or anywhere.
+                // The rays are close together, or arbitrary.
                 let (from, to) = (from + spread * 1e-6 * one, to + spread * 1e-6 * other);
                 origin.set(lane, from);
                 dir.set(lane, (to - from).try_normalize().unwrap_or(DVec3::X));
