@@ -55,7 +55,8 @@ const FEW_REGISTERS: usize = 6;
 impl OwnFunction {
     /// Parses a function with these arguments.
     ///
-    /// # Errors Returns the first place where the text is not a formula in these arguments.
+    /// # Errors
+    /// Returns the first place where the text is not a formula in these arguments.
     pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
         let value = |steps: &[Step]| Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
         let Operations { steps, pieces, .. } = parser::parse(text, arguments, named, value)?;

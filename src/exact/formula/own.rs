@@ -35,7 +35,8 @@ impl OwnFunction {
 
 /// Splits the head of a function, `f(u, v)`, into its name and its arguments. Returns `None` for other texts.
 ///
-/// # Errors Returns the reason why the text cannot be the head of a function.
+/// # Errors
+/// Returns the reason why the text cannot be the head of a function.
 pub fn head(text: &str) -> Option<(&str, Result<Vec<&str>, String>)> {
     let (name, rest) = text.split_once('(')?;
     let arguments = || {

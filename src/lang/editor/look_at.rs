@@ -44,7 +44,8 @@ impl LookAt {
 ///
 /// The viewer stays, and the middle of the image plane appears in the middle of the image, at the same size as before.
 ///
-/// # Errors Returns the reason why no `look_at` has the view of the `camera`, or why the text does not determine it.
+/// # Errors
+/// Returns the reason why no `look_at` has the view of the `camera`, or why the text does not determine it.
 pub fn look_at(view: &View, wanted: &Range<usize>) -> Option<Result<LookAt, String>> {
     let camera = view.items.iter().find_map(|item| match item {
         Item::Entity(entity) if entity.known.is_some_and(|known| known.name == "camera") => Some(entity),

@@ -149,7 +149,8 @@ pub fn describe(namespace: Namespace) -> String {
 
 /// Checks whether an item can have a name.
 ///
-/// # Errors Returns the reason why it cannot.
+/// # Errors
+/// Returns the reason why it cannot.
 pub fn check_name(namespace: Namespace, name: &str) -> Result<(), String> {
     match namespace {
         Namespace::Number if !formulas::is_name(name) => Err(format!(

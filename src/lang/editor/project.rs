@@ -167,7 +167,8 @@ pub fn usages(group: &Group, at: usize, with_definition: bool) -> Vec<Location> 
 
 /// Returns the changes that rename the name at a position of the group's first file.
 ///
-/// # Errors Returns the reason why the name cannot be changed.
+/// # Errors
+/// Returns the reason why the name cannot be changed.
 pub fn renamed(group: &Group, at: usize, new: &str) -> Result<Vec<(Location, String)>, String> {
     let names = all_names(group);
     let id = definition(&names, at).ok_or("there is no name of the scene here")?;

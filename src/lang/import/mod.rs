@@ -30,7 +30,8 @@ pub struct Imported {
 /// Converts a file of another program, recognised by its name or, unless the name is that of a scene, by its text.
 /// `name` is the file's name in messages.
 ///
-/// # Errors Returns the errors of the file.
+/// # Errors
+/// Returns the errors of the file.
 pub fn scene(name: &str, bytes: &[u8]) -> Result<Option<Imported>, Report> {
     let by_name = Program::of_name(name);
     if by_name.is_none()

@@ -18,8 +18,8 @@ use tabray_exact::scalar::{Scalar, dot, per_axis};
 const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// A bound of the rounding error of the dot product of the normal and the ray's direction, as a fraction of the product
-/// of the edges. The error of a camera ray's direction is 3, and its components add up to at most 1.74. This gives 1.74
-/// * (10 + 2 * 6) = 39, less than 48.
+/// of the edges. In the same units, the error of a camera ray's direction is 3, and its components add up to at most
+/// 1.74. This gives 1.74 * (10 + 2 * 6) = 39, less than 48.
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
 /// Bounds of the distance between a ray's origin and the exact point that it was rounded from, in world units. The ray

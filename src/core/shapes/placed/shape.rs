@@ -32,11 +32,11 @@ pub struct ByPlacement;
 /// A bound of the error of [`Placed::to_object_space`] as a map of unit vectors, times the minimum scale, and of the
 /// rounding of a mapped point or direction.
 ///
-/// In units of 2^-53: an angle of up to 2 pi has 3 roundings, an error of 19, and its sine and cosine have an error of
-/// 20. The error of a component of the product of three rotations is 3 * 20 * sqrt(2) and the rounding of the products,
-/// together less than 100. The error of a matrix of nine such components is 300, and a product with it adds 8: less
-/// than 512. For a rotation around an axis, the error of a component of the normalized axis is 4. The errors of the
-/// three terms are 21, 25 and 40, and their sum adds 3: also less than 100.
+/// In units of 2^-53: an angle of up to 2 pi has 3 roundings, an error of 19, and the error of its sine and cosine is
+/// 20 units. For a component of the product of three rotations, it is 3 * 20 * sqrt(2) and the rounding of the
+/// products, together less than 100. The error of a matrix of nine such components is 300, and a product with it adds
+/// 8: less than 512. For a rotation around an axis, the error of a component of the normalized axis is 4. The errors of
+/// the three terms are 21, 25 and 40, and their sum adds 3: also less than 100.
 const TURN: f64 = 256.0 * f64::EPSILON;
 
 /// The drift of a camera ray in world space: the error of a component of its direction is at most 3 units of 2^-53.

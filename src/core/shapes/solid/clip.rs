@@ -62,7 +62,8 @@ impl Clip {
     /// Clips an entity's surface, which is cut open, or closed by the faces of the object if `is_capped`. These faces
     /// keep the material and the appearance of the object. The surface must have an equation that is negative inside.
     ///
-    /// # Errors Returns the reason why the surface cannot be capped, or why the two make no solid.
+    /// # Errors
+    /// Returns the reason why the surface cannot be capped, or why the two make no solid.
     pub fn cut(self, args: &Args, mut surface: Body, is_capped: bool) -> Result<Body, Refusal> {
         if is_capped && let Some(why) = surface.shape.why_not_closed() {
             return Err(Refusal {

@@ -41,7 +41,8 @@ pub const NO_LOOKS: &str = "has a file without materials and colours";
 /// Reads the triangles of a file, and the wanted attributes. Recognises the format by the beginning of the file, or
 /// else by the extension of its name. Takes roughly at most `memory` bytes.
 ///
-/// # Errors Returns the error, with its place in the file.
+/// # Errors
+/// Returns the error, with its place in the file.
 pub fn read(path: &Path, wanted: Wanted, memory: u64) -> Result<Model, ReadError> {
     let cannot = |error: io::Error| {
         let is_missing = error.kind() == io::ErrorKind::NotFound;
