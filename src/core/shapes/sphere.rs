@@ -101,8 +101,8 @@ pub(crate) fn quick_hit<A: AccuracyTag>(line: &SphereLine, radius: f64) -> f64 {
     let doubt = aside_error * (2.0 * radius + aside_error);
     let is_missed = discriminant < -doubt;
     // If the discriminant is GRAZE times its error, the relative error of the root is 1 / (2 GRAZE), and a Newton step
-    // leaves 1 / (8 GRAZE^2) of it. `spheres_are_found` and `ellipsoids_are_found` in `tests/shapes/arithmetic.rs`
-    // check the results to 4 ulps.
+    // leaves 1 / (8 GRAZE^2). `spheres_are_found` and `ellipsoids_are_found` in `tests/shapes/arithmetic.rs` check the
+    // results to 4 ulps.
     const GRAZE: f64 = (1 << 18) as f64;
     let is_doubtful = (A::ACCURACY == Accuracy::Strict)
         | (!is_missed
@@ -192,9 +192,9 @@ pub fn t_bounds(
     // Far more than the relative rounding error of the root if the discriminant exceeds `doubt`.
     const ERROR: f64 = 1.0 / (1 << 29) as f64;
     const ASIDE_ERROR: f64 = 32_768.0 * f64::EPSILON;
-    // A line that starts within an error e of the sphere has one root at most `2 r e` divided by the other root from
-    // its origin. The other root is at least `sqrt(ASIDE_ERROR r size)`, and so the distance is less than `ERROR size`
-    // if the size is this many e.
+    // A line that starts within an error e of the sphere has one root whose distance from its origin is at most `2 r e`
+    // divided by the other root. The other root is at least `sqrt(ASIDE_ERROR r size)`, and so the distance is less
+    // than `ERROR size` if the size is this many e.
     const ORIGIN_ERRORS: f64 = (1_u64 << 49) as f64;
     // A line that goes inward by this fraction of the size does so by far more than its start may be off the sphere.
     const INWARD: f64 = 1.0 / (1 << 20) as f64;

@@ -1,8 +1,8 @@
 //! Crossings of a ray with all faces of a closed mesh, in order, decided exactly for the rounded ray.
 //!
 //! A ray through an edge or a corner, or in the plane of a face, is decided by symbolic perturbation (Edelsbrunner and
-//! Mücke 1990): as if its origin were moved by an infinitesimal number along x, by a far smaller one along y, and by an
-//! even smaller one along z. The moved ray meets no edge, and so enters and leaves a closed mesh alternately. As for
+//! Mücke 1990): as if its origin were moved by an infinitesimal distance along x, by a far smaller one along y, and by
+//! an even smaller one along z. The moved ray meets no edge, and so enters and leaves a closed mesh alternately. As for
 //! [`orientation`](crate::geometry::orientation), products of coordinates must not underflow.
 
 use super::face::Leaving;

@@ -151,7 +151,8 @@ impl Quadratic {
         let ((x, x_low), (y, y_low), (z, z_low)) = (place(0), place(1), place(2));
         let (at, low) = (DVec3::new(x, y, z), DVec3::new(x_low, y_low, z_low));
         let (s, l) = (&self.square, self.linear);
-        // The equation is x (Ax + Dy + Ez + G) + y (By + Fz + H) + z (Cz + I) - J. Each sum has its rounding error.
+        // The equation is x (Ax + Dy + Ez + G) + y (By + Fz + H) + z (Cz + I) - J. Each sum comes with its rounding
+        // error.
         let (of_x, of_x_low) = compensated([s.x_axis.x, 2.0 * s.y_axis.x, 2.0 * s.z_axis.x], [x, y, z], l.x);
         let (of_y, of_y_low) = compensated([s.y_axis.y, 2.0 * s.z_axis.y, 0.0], [y, z, 0.0], l.y);
         let (of_z, of_z_low) = compensated([s.z_axis.z, 0.0, 0.0], [z, 0.0, 0.0], l.z);

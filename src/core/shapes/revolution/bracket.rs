@@ -26,8 +26,8 @@ const MARGIN: f64 = 4.0;
 /// with a larger spread are traced alone.
 const MOST_OFF: f64 = 1e-4;
 
-/// The maximum number of rays that are bracketed together. It is small enough for their data to stay in the cache, and
-/// for slabs to be skipped that none of them reaches.
+/// The maximum number of rays that are bracketed together. It is small enough to keep their data in the cache, and to
+/// skip slabs that none of them reaches.
 pub(super) const MAX_RAYS: usize = 64;
 
 impl Revolution {

@@ -98,8 +98,8 @@ impl<const N: usize> Lanes<N> {
         (self.base[lane], self.off[lane]) = (base, off);
         (self.from[lane], self.to[lane]) = (from, to);
         // The coefficients and the value have about ten roundings of half an EPSILON of terms that add up to at most `2
-        // (c + a s^2)`: 10 EPSILON of that sum. An error `off` of the base changes the squared distance on the surface
-        // by `2 widest off`.
+        // (c + a s^2)`: 10 EPSILON of that sum. An error of `off` in the base changes the squared distance on the
+        // surface by `2 widest off`.
         let farthest = larger(from.abs(), to.abs());
         self.rounding[lane] =
             16.0 * f64::EPSILON * (c + a * farthest * farthest + widest * widest) + 4.0 * widest * off;
@@ -152,7 +152,7 @@ impl<const N: usize> Lanes<N> {
         let v = self.y[lane] - slab.middle;
         let farthest = larger(larger((v + from * dy).abs(), (v + to * dy).abs()), v.abs());
         let slope = slab.c1.abs() + 2.0 * slab.c2.abs() * farthest;
-        // An error `off` of the height changes the parabola by `slope off`. The parabola's value has about ten
+        // An error of `off` in the height changes the parabola by `slope off`. The parabola's value has about ten
         // roundings of half an EPSILON of its terms, and the error of `v` is half an EPSILON of the height.
         let rounding = self.rounding[lane]
             + 4.0 * self.off[lane] * slope

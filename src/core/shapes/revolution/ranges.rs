@@ -1,7 +1,7 @@
 //! The ranges of heights where a profile is negative and where it is not, proven by bounds of its value and slope.
 //!
 //! A range is halved until bounds show that the profile has one sign there, or is monotonic and thus changes its sign
-//! at most once, between two neighbouring numbers. Where rounding hides the sign on any shorter piece, too, the
+//! at most once, between two neighbouring numbers. Where rounding hides the sign on all shorter pieces, too, the
 //! computed sign counts. A bound of the profile there is kept, and must be negligible.
 
 use super::budget::Budget;

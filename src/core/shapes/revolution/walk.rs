@@ -127,8 +127,8 @@ impl Revolution {
         }
     }
 
-    /// Finds the same first hit as [`first_hit`](Self::first_hit) by another method in the same bounding cylinder. Only
-    /// the course notes' steps search all of the ray between the surface's heights, as in the notes.
+    /// Finds the first hit, like [`first_hit`](Self::first_hit), but by another method, in the same bounding cylinder.
+    /// Only the course notes' steps search all of the ray between the surface's heights, as in the notes.
     pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, range: &RayRange) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
         let Some(local) = Local::new(frame, &ray.into(), range, self.height, widest) else { return MISS };

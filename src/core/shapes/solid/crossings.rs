@@ -81,7 +81,7 @@ impl<'l, F: Precise> Crossings<'l, F> {
     }
 
     /// Tells whether the line is in the shape just before and just after a place, or `None` if that is undecided. In
-    /// low precision, a crossing at the place leaves it undecided.
+    /// low precision, any crossing that may be at the place leaves it undecided. In high precision, two of them do.
     pub fn around(&mut self, place: Interval<F>) -> Option<[bool; 2]> {
         for index in 0.. {
             match self.get(index) {

@@ -5,9 +5,9 @@
 //! shape, one after the other, until one of them is visible.
 //!
 //! The equations of the other shapes, in interval arithmetic, tell whether a hit lies in them. Where two surfaces are
-//! too close for that, a proof about the exact ray decides. A ray without such a proof is decided by points on both
-//! sides of the surface. Of coincident surfaces, only those that border the solid on one side are visible, and only one
-//! of them.
+//! too close for that, a proof about the exact ray decides. For a ray without such a proof, points on both sides of the
+//! surface decide. Of coincident surfaces, those that border the solid on exactly one side are visible, and only one of
+//! them.
 
 mod clip;
 mod crossings;

@@ -24,8 +24,8 @@ pub struct Model {
     /// The material of each face, as an index into `materials` plus 1, or 0 for none. It is empty if no face has a
     /// material.
     pub slots: Vec<u16>,
-    /// For each triangle, the index of the flat polygon that it is a part of, in rising order. It is empty if each
-    /// triangle is a polygon of its own.
+    /// For each triangle, the index of the flat polygon that contains it, in rising order. It is empty if each triangle
+    /// is a polygon of its own.
     pub sides: Vec<u32>,
     /// The appearance of each of these materials in the file, if wanted and known.
     pub finishes: Vec<Option<Finish>>,
