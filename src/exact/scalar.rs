@@ -39,7 +39,7 @@ pub trait Scalar:
 
     /// Returns a constant.
     fn constant(value: f64) -> Self;
-    /// Returns a number that is known up to an error: an interval for types with bounds, and otherwise the number
+    /// Returns a number that is known to within an error: an interval for types with bounds, and otherwise the number
     /// itself.
     #[inline(always)]
     fn about(value: f64, _error: f64) -> Self {

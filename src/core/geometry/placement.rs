@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 
-/// π as the sum of four numbers, up to [`PI_ERROR`].
+/// π as the sum of four numbers, to within [`PI_ERROR`].
 const PI: [f64; 4] = [
     std::f64::consts::PI,
     1.224_646_799_147_353_2e-16,

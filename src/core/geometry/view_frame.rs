@@ -30,7 +30,7 @@ const LEAST_SINE: f64 = 1e-6;
 
 impl ViewFrame {
     /// Returns the frame of a viewer that looks from a position toward a target. `up` is any vector that points up in
-    /// the image. Returns `None` if it is along the line of sight up to 1e-6 radians, or if the line of sight has no
+    /// the image. Returns `None` if it is within 1e-6 radians of the line of sight, or if the line of sight has no
     /// direction.
     pub fn new(position: DVec3, target: DVec3, up: DVec3) -> Option<Self> {
         let forward = (target - position).try_normalize()?;

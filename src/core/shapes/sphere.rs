@@ -165,9 +165,9 @@ pub fn refine<A: AccuracyTag>(line: &SphereLine, radius: f64, origin_side: Optio
     if distance.is_nan() { distance } else { RayRange::ALL.keep(distance) }
 }
 
-/// Returns whether a point at `from`, relative to the center, is on a sphere, up to `error` in the sphere's own unit
-/// and the rounding error of its distance from the center. That is less than 2 EPSILON of the length: half an EPSILON
-/// for the coordinates, 3/4 for the sum of squares and 1/2 for the root.
+/// Returns whether a point at `from`, relative to the center, is on a sphere to within `error`, in the sphere's own
+/// unit, and the rounding error of its distance from the center. That is less than 2 EPSILON of the length: half an
+/// EPSILON for the coordinates, 3/4 for the sum of squares and 1/2 for the root.
 #[inline(always)]
 pub fn is_on_surface(from: DVec3, radius: f64, error: f64) -> bool {
     (from.length() - radius).abs() <= error + 4.0 * f64::EPSILON * radius

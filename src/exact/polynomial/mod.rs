@@ -42,7 +42,7 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
         Self { norm: f64::INFINITY, ..Self::about(0.0, f64::INFINITY) }
     }
 
-    /// Returns a constant that is known up to an error.
+    /// Returns a constant that is known to within an error.
     pub fn number(value: C, error: f64) -> Self {
         let mut coefficients = [C::from(0.0); N];
         coefficients[0] = value;

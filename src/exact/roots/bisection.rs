@@ -20,7 +20,7 @@ pub fn bisect(is_true: impl Fn(f64) -> bool, (mut low, mut high): (f64, f64), to
     (low, high)
 }
 
-/// Returns the root between two places, up to the tolerance. If `falls`, the function is positive at the first.
+/// Returns the root between two places, to within the tolerance. If `falls`, the function is positive at the first.
 pub fn root(f: impl Fn(f64) -> f64, ends: (f64, f64), falls: bool, tolerance: f64) -> f64 {
     let has_crossed = |t: f64| (f(t) >= 0.0) != falls;
     let (low, high) = bisect(has_crossed, ends, tolerance);

@@ -4,7 +4,7 @@
 //! using derivatives" (1997). It takes few evaluations among methods without derivatives. With derivatives, Newton's
 //! method takes half as many.
 
-/// Returns the root between two places with different signs of the function, up to the tolerance.
+/// Returns the root between two places with different signs of the function, to within the tolerance.
 pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> f64 {
     const MAX_STEPS: usize = 200;
     // `a` is the last place, `b` the one on the other side of the root, and `c` the one before.

@@ -1,8 +1,9 @@
 //! Roots on short pieces with inconclusive bounds in `f64`, in double-double arithmetic.
 //!
-//! If a line touches a surface up to the rounding error of `f64`, the function has one turning point there. Its sign at
-//! that point tells whether the line enters the surface. A value that double-double arithmetic cannot distinguish from
-//! 0 either counts as a touch: a tangent line hits the surface, except at the start of a line that leaves the surface.
+//! If a line touches a surface to within the rounding error of `f64`, the function has one turning point there. The
+//! function's sign at that point tells whether the line enters the surface. A value that double-double arithmetic
+//! cannot distinguish from 0 either counts as a touch: a tangent line hits the surface, except at the start of a line
+//! that leaves the surface.
 
 use crate::double_double::DoubleDouble;
 use crate::dual::Dual;

@@ -84,7 +84,7 @@ impl<'a> Rounds<'a> {
         if self.is_open() {
             self.rename(&mut entity.name);
         }
-        // Words without quotes have no other meaning, unless they may be names in this round or names of numbers.
+        // Values need no change, except within a `repeat`, in a scene with named numbers, or with quotes.
         if let Some(table) = table
             && (self.is_open() || self.numbers.len() > 0 || entity.has_quotes())
         {

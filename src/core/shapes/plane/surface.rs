@@ -76,9 +76,9 @@ impl<A> Plane<A> {
         per_axis(|axis| N::constant(self.upright[axis].high))
     }
 
-    /// Returns whether a point is on the plane up to `error`, in world units, and the rounding error of its distance
-    /// from the plane. That is at most 4 EPSILON of the terms: half an ulp each for three operations on each term, and
-    /// for the normal.
+    /// Returns whether a point is on the plane to within `error`, in world units, and the rounding error of its
+    /// distance from the plane. That is at most 4 EPSILON of the terms: half an ulp each for three operations on each
+    /// term, and for the normal.
     #[inline(always)]
     pub fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         let between = self.point - at;

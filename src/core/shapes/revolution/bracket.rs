@@ -22,8 +22,8 @@ const MIN_COMPONENT: f64 = 1e-9;
 /// The margin of a slab's largest square, as a multiple of a ray's rounding error.
 const MARGIN: f64 = 4.0;
 
-/// The maximum distance between the rays that one stands for and this one, as a fraction of the surface's radius. Rays
-/// with a larger spread are traced alone.
+/// The maximum distance between a ray and the rays that it stands for, as a fraction of the surface's radius. Rays with
+/// a larger spread are traced alone.
 const MOST_OFF: f64 = 1e-4;
 
 /// The maximum number of rays that are bracketed together. It is small enough to keep their data in the cache, and to

@@ -183,7 +183,7 @@ impl<const N: usize> Lanes<N> {
 #[derive(Clone, Copy)]
 pub(super) struct Shell {
     /// The distance from the parabola's quadric on the ray's side, in squared world units. The ray crosses the surface
-    /// where this falls through 0, up to `error`. `slope_error` bounds the difference of the slopes, except for
+    /// where this falls through 0, to within `error`. `slope_error` bounds the difference of the slopes, except for
     /// `rounding`.
     ahead: Quadratic,
     error: f64,

@@ -1,4 +1,4 @@
-//! The slabs of a profile. In each, its square is a parabola up to a proven error.
+//! The slabs of a profile. In each, its square is a parabola to within a proven error.
 
 use super::budget::Budget;
 use super::no_surface::NoSurface;

@@ -1,4 +1,4 @@
-//! A slab: a range of heights in which a profile's square is a parabola up to a proven error.
+//! A slab: a range of heights in which a profile's square is a parabola to within a proven error.
 
 use super::budget::Budget;
 use tabray_exact::formula::Formula;
@@ -12,8 +12,8 @@ pub struct Slab {
     pub from: f64,
     pub to: f64,
     pub middle: f64,
-    /// In the slab, the square of the profile is `c0 + c1 v + c2 v^2` up to `error`, with `v` measured from the middle.
-    /// Its slope is the parabola's up to `slope_error`.
+    /// In the slab, the square of the profile is `c0 + c1 v + c2 v^2` to within `error`, with `v` measured from the
+    /// middle. Its slope is the parabola's to within `slope_error`.
     pub c0: f64,
     pub c1: f64,
     pub c2: f64,

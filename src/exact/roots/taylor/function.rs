@@ -58,7 +58,7 @@ pub trait FunctionOnLine {
         Bernstein::of(&self.polynomial(piece))
     }
 
-    /// Returns the root of a polynomial near a place, with correct last digits. The polynomial is known there up to
+    /// Returns the root of a polynomial near a place, with correct last digits. The polynomial is known there to within
     /// `hidden`. Returns `None` if that takes more steps.
     fn finished(&self, _near: &NearRoot, _hidden: f64) -> Option<f64> {
         None
