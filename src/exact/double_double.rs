@@ -1,6 +1,6 @@
 //! Error-free transformations and double-double arithmetic (Dekker 1971, Knuth; Joldes et al. 2017).
 //!
-//! Nothing here uses a fused multiply-add, which makes results the same bits on each machine.
+//! Nothing here uses a fused multiply-add, and so results have the same bits on each machine.
 
 mod elementary;
 pub mod exact;

@@ -51,7 +51,7 @@ impl Bracket {
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }
 
-/// A ray, and the maximum distance of the rays that it stands for.
+/// A ray, and the maximum distance between it and the rays that it stands for.
 ///
 /// A ray in a copy's own coordinates stands for all rays that may have been rounded to it. A ray in world space stands
 /// for itself. The rounding of a camera ray's direction, 3 units of 2^-53 in each component, is not included here, and

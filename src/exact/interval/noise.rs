@@ -4,7 +4,7 @@ use super::{Float, Interval};
 use crate::noise;
 use crate::scalar::{Scalar, of_noise};
 
-/// The number of cells along an axis from which on cells are not examined one by one.
+/// The maximum number of cells along an axis that are examined one by one.
 const MOST_CELLS: f64 = 2.0;
 
 /// Encloses the noise, or its derivative of these orders, at the points of a box.

@@ -175,7 +175,7 @@ impl<'a> Rounds<'a> {
         }
     }
 
-    /// Counts a round, and reports too many.
+    /// Counts a round, and reports an error if there are too many.
     fn has_room(&mut self, report: &mut Report<'_>) -> bool {
         self.count += 1;
         let is_there = self.count <= MOST && self.bytes <= MOST_BYTES;

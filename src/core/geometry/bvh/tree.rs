@@ -32,7 +32,7 @@ pub(super) struct Ahead {
 /// The bit that marks an object.
 pub(super) const OBJECT: u32 = 1 << 31;
 
-/// The limit for the number of objects, for which [`Ahead::place`] has room.
+/// The maximum number of objects. It is limited by [`Ahead::place`].
 const MOST: usize = 1 << 29;
 
 /// The scratch space of searches, reused between them.
