@@ -32,7 +32,7 @@ pub(super) struct Ahead {
 /// The bit that marks an object.
 pub(super) const OBJECT: u32 = 1 << 31;
 
-/// The maximum number of objects. It is limited by [`Ahead::place`].
+/// The number of objects must be below this, because of the range of [`Ahead::place`].
 const MOST: usize = 1 << 29;
 
 /// The scratch space of searches, reused between them.
