@@ -50,7 +50,7 @@ pub mod simd;
 pub mod text;
 pub mod world;
 
-/// How properties are tested: cases that failed are kept below `tests/`.
+/// Returns the configuration of property tests. Failed cases are kept below `tests/`.
 #[cfg(test)]
 pub(crate) fn properties() -> proptest::prelude::ProptestConfig {
     use proptest::test_runner::{Config, FileFailurePersistence};

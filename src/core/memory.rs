@@ -1,7 +1,7 @@
-//! Memory that may be refused.
+//! Memory allocations that are allowed to fail.
 //!
-//! Rust ends a program if memory is refused, unless the code asked for memory in a way that can fail. A program whose
-//! allocator tells the user of refused memory can find out here whether the refused allocation was one that may fail.
+//! Rust ends a program when an allocation fails, unless the code asked for memory in a way that can fail. An
+//! allocator that reports failures to the user can ask here whether a failure is an ordinary error.
 
 use std::cell::Cell;
 
@@ -9,7 +9,7 @@ thread_local! {
     static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs work in which a refused allocation is an ordinary error.
+/// Runs work in which a failed allocation is an ordinary error.
 pub fn may_fail<T>(work: impl FnOnce() -> T) -> T {
     let before = MAY_FAIL.replace(true);
     let done = work();
@@ -17,7 +17,7 @@ pub fn may_fail<T>(work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Tells whether this thread is in work in which a refused allocation is an ordinary error.
+/// Tells whether this thread runs work in which a failed allocation is an ordinary error.
 pub fn is_allowed_to_fail() -> bool {
     MAY_FAIL.get()
 }

@@ -1,11 +1,11 @@
 //! Loops on the threads of the caller.
 //!
-//! These are the threads of the rayon pool that the caller is in (`pool.install(...)`), and otherwise rayon's own, one for
-//! each core. Where there are none, as on a system that refuses them or in a browser, the calling thread does all of the
+//! The loops run on the rayon pool that the caller is in (`pool.install(...)`), and otherwise on rayon's global pool,
+//! with a thread for each core. Where no threads can be started, as in a browser, the calling thread does all of the
 //! work.
 //!
-//! The functions of rayon are generic in everything that a loop does, so that each loop costs the compiler some
-//! thousand lines. Here that code is compiled once, and only the body of a loop is compiled for each.
+//! Rayon's functions are generic in the whole body of a loop, so each loop costs the compiler some thousand lines.
+//! Here that code is compiled once, and only the bodies of loops are compiled separately.
 
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -14,17 +14,18 @@ use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock};
 
-/// The number of parts per thread that many indices are divided into, so that no thread waits long for the last one.
+/// The number of parts per thread into which a loop is divided. With many parts, no thread waits long for the last
+/// one.
 const PARTS: usize = 32;
 
-/// The number of places that are filled by one thread together.
+/// The number of elements that a thread fills at a time.
 const FILLED: usize = 1 << 12;
 
-/// Returns the number of threads that loops run on here.
+/// Returns the number of threads on which loops of the calling thread run.
 pub fn threads() -> usize {
     static HAS_OWN: OnceLock<bool> = OnceLock::new();
     let has_own = || {
-        // An error without a source says that they have been started already.
+        // An error without a source means that the pool has been started already.
         ThreadPoolBuilder::new().build_global().map_or_else(|error| error.source().is_none(), |()| true)
     };
     if rayon::current_thread_index().is_some() || *HAS_OWN.get_or_init(has_own) {
@@ -55,7 +56,7 @@ pub fn join<A: Send, B: Send>(
     if are_large && threads() > 1 { rayon::join(one, other) } else { (one(), other()) }
 }
 
-/// Runs work for each index below a number.
+/// Runs work for each index below `count`.
 pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     if threads() == 1 {
         (0..count).for_each(work);
@@ -64,7 +65,7 @@ pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     }
 }
 
-/// Runs work for each index below a number, in their order: each thread takes the next index when it is free. Each
+/// Runs work for each index below `count`, in their order: each thread takes the next index when it is free. Each
 /// thread makes the state that the work needs once.
 pub fn for_each_in_order<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
     let next = AtomicUsize::new(0);
@@ -80,12 +81,12 @@ pub fn for_each_in_order<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize)
     });
 }
 
-/// Runs work for each index below a number, and returns the results in their order.
+/// Runs work for each index below `count`, and returns the results in their order.
 pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     map_ranges(count, 2, &|range| range.map(&work).collect())
 }
 
-/// Runs work for ranges that cover all indices below a number, and returns the results in their order. If the indices
+/// Runs work for ranges that cover all indices below `count`, and returns the results in their order. If the indices
 /// are fewer than `many`, this thread does all of the work.
 pub fn map_ranges<T: Send>(
     count: usize,
@@ -109,13 +110,13 @@ pub fn map_ranges<T: Send>(
     all
 }
 
-/// Returns the first index below a number for which a condition holds.
+/// Returns the first index below `count` for which a condition holds.
 pub fn find_first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
     map_ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()
 }
 
-/// Returns what some work returns for each index below a number, in their order and in one piece of memory; on this thread
-/// alone where the indices are fewer than `many`.
+/// Runs work for each index below `count`, and returns the results in their order, in one allocation. If the indices
+/// are fewer than `many`, this thread does all of the work.
 pub fn filled<T: Clone + Default + Send>(
     count: usize,
     many: usize,
@@ -129,7 +130,7 @@ pub fn filled<T: Clone + Default + Send>(
     all
 }
 
-/// Fills a slice with what some work returns for each index.
+/// Fills a slice with the results of some work for each index.
 pub fn fill<T: Send>(all: &mut [T], work: impl Fn(usize) -> T + Sync) {
     let _ = chunks(all, FILLED, |index, chunk| {
         for (offset, place) in chunk.iter_mut().enumerate() {
@@ -139,7 +140,7 @@ pub fn fill<T: Send>(all: &mut [T], work: impl Fn(usize) -> T + Sync) {
     });
 }
 
-/// Runs work for each chunk of a slice, with its index, until the work breaks; then chunks may be left out.
+/// Runs work for each chunk of a slice, with its index. Once the work breaks, chunks may be skipped.
 pub fn chunks<T: Send>(
     all: &mut [T],
     size: usize,

@@ -84,7 +84,7 @@ fn cut(text: &str, (max_len, [first, last]): (usize, [usize; 2])) -> Cow<'_, str
     Cow::Owned(format!("{}…{}", &text[..first], &text[last..]))
 }
 
-/// Characters beside controls that have no width, that turn the direction of those around them, or that end a line.
+/// Characters, besides control characters, that have no width, change the direction of text, or end a line.
 const UNSEEN: [RangeInclusive<char>; 15] = [
     '\u{ad}'..='\u{ad}',
     '\u{34f}'..='\u{34f}',
@@ -103,19 +103,19 @@ const UNSEEN: [RangeInclusive<char>; 15] = [
     '\u{e0000}'..='\u{e0fff}',
 ];
 
-/// Tells whether a character is not seen, or does something to a terminal.
+/// Tells whether a character is invisible or a control character.
 pub fn is_unseen(letter: char) -> bool {
     letter.is_control() || letter > '~' && UNSEEN.iter().any(|range| range.contains(&letter))
 }
 
-/// Writes characters that are not seen as `\u{200b}`, and line ends as `\n`: a word with one of them looks like another
-/// word, and a control character commands the terminal.
+/// Escapes invisible characters as `\u{200b}`, and line ends as `\n`: a word with an invisible character looks like
+/// another word, and a control character commands the terminal.
 pub fn visible(text: &str) -> Cow<'_, str> {
     visible_but(text, &[])
 }
 
-/// Writes characters that are not seen as [`visible`] does, but keeps line ends and tabs: for texts that people read on
-/// a terminal or on a page.
+/// Escapes invisible characters as [`visible`] does, but keeps line ends and tabs, for texts that people read on a
+/// terminal or on a page.
 pub fn visible_lines(text: &str) -> Cow<'_, str> {
     visible_but(text, &['\n', '\t'])
 }
@@ -134,8 +134,7 @@ fn visible_but<'t>(text: &'t str, kept: &[char]) -> Cow<'t, str> {
     Cow::Owned(shown)
 }
 
-/// Writes a path, or another word of the system, for people: as [`visible`] does, and bytes that are not UTF-8 as
-/// `\xff`.
+/// Shows a path, or another string of the system: as [`visible`] does, with bytes that are not UTF-8 as `\xff`.
 pub fn shown(word: impl AsRef<OsStr>) -> String {
     let mut shown = String::new();
     for chunk in word.as_ref().as_encoded_bytes().utf8_chunks() {
@@ -145,12 +144,12 @@ pub fn shown(word: impl AsRef<OsStr>) -> String {
     shown
 }
 
-/// Returns the last boundary between two characters of a text that is not after byte `at`.
+/// Returns the last character boundary of a text that is not after byte `at`.
 pub fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
-/// Quotes a word of a command for a shell. Characters that are not seen, and bytes that are not UTF-8, are written as
+/// Quotes a word of a command for a shell. Invisible characters, and bytes that are not UTF-8, are written as
 /// `$'\033'`, which bash, zsh, and POSIX of 2024 can read.
 pub fn quoted(word: &OsStr) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
@@ -161,7 +160,7 @@ pub fn quoted(word: &OsStr) -> String {
             let seen = |byte: u8| match byte {
                 b'\'' | b'\\' => format!("\\{}", char::from(byte)),
                 b' '..=b'~' => char::from(byte).to_string(),
-                // Three octal digits: of hexadecimal ones, a shell may take more than two.
+                // Three octal digits: a shell may read more than two hexadecimal ones.
                 byte => format!("\\{byte:03o}"),
             };
             format!("$'{}'", word.as_encoded_bytes().iter().map(|byte| seen(*byte)).collect::<String>())
@@ -169,7 +168,7 @@ pub fn quoted(word: &OsStr) -> String {
     }
 }
 
-/// Returns the file that was probably meant by a path that leads nowhere: the name of a file in the same folder.
+/// Returns the name of the file in the same folder that was probably meant by the path of a missing file.
 pub fn nearest_file(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     refuse_outside(folder).ok()?;
@@ -264,8 +263,8 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// Writes a value as JSON on one line. The fields stand in the order in which its type declares them; characters that are
-/// not seen are escaped.
+/// Writes a value as JSON on one line. The fields stand in the order in which its type declares them. Invisible
+/// characters are escaped.
 pub fn json(value: &impl Serialize) -> String {
     escaped(serde_json::to_string(value).expect(NAMED))
 }
@@ -275,8 +274,8 @@ pub fn json_in_lines(value: &impl Serialize) -> String {
     escaped(serde_json::to_string_pretty(value).expect(NAMED)) + "\n"
 }
 
-/// Escapes the characters of JSON that are not seen. Except for line ends between values, such characters can stand
-/// only in strings.
+/// Escapes the invisible characters of JSON. Except for line ends between values, such characters can stand only in
+/// strings.
 fn escaped(json: String) -> String {
     let is_shown = |letter: char| letter == '\n' || !is_unseen(letter);
     if json.chars().all(is_shown) {
@@ -302,7 +301,7 @@ pub fn sha256(hash: &[u8]) -> String {
     format!("sha256:{digits}")
 }
 
-/// A value that people choose by its name, of a few.
+/// A type with few values, which people choose by name.
 pub trait Named: Copy + PartialEq + 'static {
     /// All values, in the order in which they are listed.
     const ALL: &'static [Self];
@@ -310,7 +309,7 @@ pub trait Named: Copy + PartialEq + 'static {
     /// Returns the value's name.
     fn name(self) -> &'static str;
 
-    /// Returns the value of this name.
+    /// Returns the value with this name.
     fn of_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|value| value.name() == name)
     }
