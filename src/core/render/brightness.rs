@@ -1,4 +1,4 @@
-//! Bounds on what the rays through a part of an image return, each by itself.
+//! Bounds on the colours of the single rays through a part of an image.
 
 use crate::render::enclosed::{EnclosedScene, EnclosingTracer, LightPoints, SceneBounds};
 use crate::render::footprint::{LIMITS, lines};
@@ -10,8 +10,8 @@ use crate::world::sensor::Sensor;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
 
-/// Bounds the colours of a model's primary rays, where light with a size counts by its mean. The bounds are multiplied
-/// by the greatest slope with which an image shows light, so that white is 1 or more.
+/// Bounds the colours of a model's primary rays; a light with a size counts by its mean. The bounds are multiplied by
+/// the steepest slope of the display, so white is 1 or more.
 pub struct Brightness<'m> {
     model: &'m Model,
     depth: Depth,
@@ -26,7 +26,7 @@ impl<'m> Brightness<'m> {
         Self { model, depth: Depth::of(model), lights, bounds: SceneBounds::of(model) }
     }
 
-    /// Bounds any channel of any primary ray, where 1 is white; infinite where there is no bound.
+    /// Bounds all channels of all primary rays, where 1 is white; infinite where there is no bound.
     pub fn most(&self, camera: &Sensor) -> f64 {
         let (viewer, rules) = (camera.origins(), camera.rules);
         let hits = self.model.objects.iter().zip(&self.depth.objects).map(|(object, bounds)| {

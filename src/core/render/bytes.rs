@@ -5,7 +5,7 @@ use crate::simd::soa::View;
 use crate::world::display::Display;
 use tabray_exact::scalar::Scalar;
 
-/// Returns the level of a channel, of which a byte shows the whole part.
+/// Returns the level of a channel: 255 is white. A byte shows its integer part.
 #[inline(always)]
 pub fn level<N: Scalar>(channel: N) -> N {
     N::constant(255.0) * channel
@@ -48,8 +48,8 @@ pub(crate) fn to_bytes(cpu: Cpu, display: &Display, colours: View, pixels: &mut 
 /// 2^52: adding it rounds a number from 0 to 255 to an integer, which then is the lowest bits of the sum.
 const WHOLE: f64 = (1_u64 << 52) as f64;
 
-/// Returns a number whose lowest byte is what [`to_byte`] returns, and whose next two bytes are 0, by operations that have
-/// vector instructions; a conversion to a byte has none.
+/// Returns a number whose lowest byte is the result of [`to_byte`], and whose next two bytes are 0. Its operations
+/// have vector instructions; a conversion to a byte has none.
 #[inline(always)]
 fn quantized(channel: f64) -> u64 {
     let level = level(channel);

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// The maximum number of names that are listed.
 const NAMED: usize = 4;
 
-/// The largest change, in levels, that a decision states for a light with little effect.
+/// The effect of a light, in levels, up to which a decision calls attention to it.
 const FAINT: f64 = 2.0;
 
 /// A decision, and the reason for it.

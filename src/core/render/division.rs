@@ -1,7 +1,7 @@
-//! Divides the tiles of an image into parts of about the same work, which several machines may render.
+//! Division of an image's tiles into parts of about equal work, which several machines may render.
 //!
-//! The work is known from a quick look: rays and tests are counted at some pixels, and no clock is read. So every machine
-//! divides the image of the same plan in the same way.
+//! The work is estimated by a quick look: rays and tests are counted at some pixels, and no clock is read. So every
+//! machine divides the image of the same plan in the same way.
 
 use crate::parallel;
 use crate::render::observer::{Count, RayKind, TraceObserver};
@@ -63,13 +63,13 @@ impl Grid {
         })
     }
 
-    /// Returns the rows of the tile rows that some tiles lie in. There must be at least one tile.
+    /// Returns the rows of pixels that some tiles cover. There must be at least one tile.
     pub fn rows(self, tiles: &Range<usize>) -> Range<usize> {
         self.tile(tiles.start)[1].start..self.tile(tiles.end - 1)[1].end
     }
 }
 
-/// The maximum number of pixels that are looked at, and the minimum.
+/// The minimum and the maximum number of pixels that are looked at.
 const LOOKED_AT: [usize; 2] = [256, 1 << 14];
 
 /// The number of samples of a part for each pixel that is looked at. Looking traces rays one by one, which takes
@@ -123,7 +123,7 @@ impl WorkSamples {
     fn new(renderer: &Renderer, plan: &Plan, [columns, rows]: [&Range<usize>; 2], parts: usize) -> Self {
         let size = [columns.len(), rows.len()];
         let pixels = size[0] * size[1];
-        // Where pixels differ in their numbers of samples, all samples of a pixel are taken to know its number.
+        // Where pixels differ in their numbers of samples, counting those of a pixel takes all of them.
         let samples = if plan.camera.adaptive.is_some() { 1 } else { plan.camera.samples as usize };
         let [least, most] = LOOKED_AT;
         let count = (pixels.saturating_mul(samples) / parts / SAMPLES_PER_LOOK).clamp(least, most);
@@ -138,8 +138,8 @@ impl WorkSamples {
         Self { cells, work: renderer.run(|| parallel::map(cells[0] * cells[1], work)) }
     }
 
-    /// Returns the work of a tile: that of the pixel looked at in the cell of the tile's middle, for each pixel of the
-    /// tile.
+    /// Estimates the work of a tile: the work of the pixel looked at in the cell of the tile's middle, times the
+    /// number of the tile's pixels.
     fn work(&self, grid: Grid, tile: usize) -> u64 {
         let [columns, rows] = grid.tile(tile);
         let cell = |side: usize, range: &Range<usize>| {

@@ -1,4 +1,4 @@
-//! The objects that are so small in the image that they may lie between samples.
+//! Objects so small in the image that they may fall between samples.
 
 use crate::geometry::aabb::Aabb;
 use crate::render::tiles::TILE;
@@ -9,11 +9,11 @@ use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
 use tabray_exact::scalar::per_axis;
 
-/// The width or height in pixels below which an object may be missed by the first samples of pixels that see it: its
-/// bounds then hold no whole neighbourhood of a pixel.
+/// The width or height in pixels below which the first samples of pixels may miss an object: its bounds then contain
+/// no whole neighbourhood of a pixel.
 const SMALL: f64 = 2.0;
 
-/// The number of samples that a pixel takes at least if the bounds of a small object reach into it.
+/// The minimum number of samples of a pixel into which the bounds of a small object reach.
 pub(crate) const FEATURE_SAMPLES: u32 = 64;
 
 /// The small objects of an image, by the squares of pixels on which their bounds are projected.
@@ -23,8 +23,8 @@ pub(crate) struct Features {
     /// For each square, from the lower left one in rows, the index of its first entry in `small`; and the end.
     starts: Vec<u32>,
     small: Vec<SmallObject>,
-    /// The number of small objects, some perhaps in several squares; `None` where the camera does not say where objects
-    /// are seen, so that there may be a small one in each pixel.
+    /// The number of small objects, each counted once. `None` where the camera cannot project them: then any pixel
+    /// may see one.
     count: Option<usize>,
 }
 
@@ -70,7 +70,7 @@ impl Features {
         }
     }
 
-    /// Tells whether the bounds of a small object reach into a pixel, given by column and row, and are no farther than a
+    /// Tells whether the bounds of a small object reach into a pixel, given by column and row, and are nearer than a
     /// distance in world units.
     pub fn any_at(&self, [column, row]: [usize; 2], distance: f64) -> bool {
         if self.count.is_none() {
@@ -84,7 +84,7 @@ impl Features {
         })
     }
 
-    /// Returns the number of small objects; `None` where the camera does not say where objects are seen.
+    /// Returns the number of small objects; `None` where the camera cannot project them.
     pub fn count(&self) -> Option<usize> {
         self.count
     }
@@ -101,7 +101,7 @@ impl SmallObject {
             let Projected::At(place) = camera.project(DVec3::from_array(per_axis(part))) else { return None };
             (low, high) = (low.min(place), high.max(place));
         }
-        // So written that no NaN counts as small.
+        // Written so that NaN does not count as small.
         let is_small = (high - low).min_element() < SMALL && (high - low).is_finite();
         let pixels = |axis: usize| {
             let last = camera.pixels[axis] as f64 - 1.0;

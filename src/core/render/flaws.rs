@@ -1,18 +1,18 @@
-//! The pixels of an image that are not as they should be: those cut off at the ray budget, those whose first hit could not
-//! be decided, and those that lack light from beyond the longest path.
+//! Flawed pixels of an image: those cut off at the ray budget, those whose first hit is undecided, and those that
+//! lack light from beyond the longest path.
 
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::world::certify::Doubt;
 use std::collections::BTreeMap;
 
-/// Counts the pixels that are not as they should be. As an observer, it counts nothing else.
+/// Counts the flawed pixels of an image. As an observer, it counts nothing else.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flaws {
     /// The pixels that have used up their ray budget.
     pub cuts: BudgetCuts,
     /// The pixels whose first hit could not be decided.
     pub undecided: Undecided,
-    /// The rays from the viewer whose light is not all there, because paths end under the notes' rules.
+    /// The rays from the viewer that lack light because the notes' rules end long paths.
     pub far: FarPaths,
 }
 
@@ -34,8 +34,8 @@ pub struct FarPaths {
     pub of: u64,
 }
 
-/// The numbers of pixels with a camera ray whose first hit could not be decided, by the index of the object that it may hit,
-/// and by the reason. Where a pixel has several, the first counts.
+/// The numbers of pixels with a camera ray whose first hit could not be decided, by the index of the object that it
+/// may hit, and by the reason. Where a pixel has several, the first counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Undecided(pub BTreeMap<(usize, Doubt), u64>);
 

@@ -1,13 +1,13 @@
 //! Certified pixels: proofs about all rays through a pixel's footprint at once.
 //!
-//! The colour of a pixel, which samples estimate, is the mean of what primary rays return over the square around the
-//! pixel's centre that is one pixel wide, and over the points of lights with a size. A footprint is a part of that square.
-//! The rules by which a scene is rendered are evaluated for all rays through it, in [`Affine`] numbers: functions that are
-//! linear in the place within the footprint, up to a bound. Where every decision is the same for all rays, the mean is
-//! known to within that bound, however steep the linear part is. Where a decision is open, such as which of two objects is
-//! seen, the colour is anything that it would be either way.
+//! The colour of a pixel, which samples estimate, is a mean over the primary rays through a square around the pixel's
+//! centre, one pixel wide, and over the points of lights with a size. A footprint is a part of that square. The rules
+//! of rendering are evaluated for all of its rays in [`Affine`] numbers: functions that are linear in the place
+//! within the footprint, up to a bound. Where every decision is the same for all rays, the mean is known to within
+//! that bound, however steep the linear part is. Where a decision is open, such as which of two objects is seen, the
+//! colour is enclosed for both outcomes.
 //!
-//! The footprint whose mean is known the least is cut into quarters, again and again, until the mean of the whole pixel is
+//! The footprint whose mean is least known is cut into quarters, repeatedly, until the mean of the whole pixel is
 //! known well enough.
 
 use crate::geometry::image_point::ImagePoint;
@@ -37,7 +37,7 @@ pub(crate) const MAX_CUTS: u32 = 10;
 /// From this number of footprints on, the search judges whether [`MAX_FOOTPRINTS`] will be enough.
 const JUDGED: usize = 1 + 4 * 16;
 
-/// More than the roundings of a colour within its bounds, where 1 is white.
+/// An upper limit on the rounding errors of a colour within its bounds, where 1 is white.
 const ROUNDING: f64 = 1e-14;
 
 /// Proven bounds of a pixel's colour.
@@ -57,25 +57,25 @@ impl Proof {
         display.middle([self.low, self.high])
     }
 
-    /// Bounds the difference of a colour within the bounds from the true one, as they are shown: the largest of the
-    /// channels, where 1 is white.
+    /// Bounds the error of a colour within the bounds, as shown: the largest difference from the true colour in any
+    /// channel, where 1 is white.
     pub fn error(&self, colour: Rgb, display: &Display) -> f64 {
         let [low, high] = display.shown_within([self.low, self.high]);
         let shown = display.shown(colour);
         (high - shown).max(shown - low).max_element() + ROUNDING
     }
 
-    /// Returns the possible colour that is the nearest to one.
+    /// Returns the possible colour nearest to this colour.
     pub fn nearest(&self, colour: Rgb) -> Rgb {
         colour.max(self.low).min(self.high)
     }
 
-    /// Tells whether the colour in the middle is within an error, where 1 is white, as it is shown.
+    /// Tells whether the error of the middle colour, as shown, is within a limit, where 1 is white.
     pub fn is_within(&self, error: f64, display: &Display) -> bool {
         self.half_width(display) <= error
     }
 
-    /// Bounds the error of the colour in the middle, as it is shown: the largest of the channels, where 1 is white.
+    /// Bounds the error of the middle colour, as shown: the largest of the channels, where 1 is white.
     pub fn half_width(&self, display: &Display) -> f64 {
         if display.truncates().is_none() {
             return self.error(self.middle(display), display);
@@ -91,17 +91,17 @@ struct Footprint {
     middle: [f64; 2],
     /// The number of times that it was cut.
     cuts: u32,
-    /// The mean of its colours.
+    /// Encloses the mean of its colours.
     mean: [Interval; 3],
 }
 
 impl Footprint {
-    /// Returns its part of the pixel.
+    /// Returns the fraction of the pixel that it covers.
     fn area(&self) -> f64 {
         power_of_two(-2 * self.cuts as i32)
     }
 
-    /// Returns how much of the pixel's colour it leaves open.
+    /// Returns the uncertainty that it adds to the pixel's colour; 0 where it may not be cut again.
     fn open(&self) -> f64 {
         if self.cuts == MAX_CUTS {
             return 0.0;
@@ -122,8 +122,8 @@ impl PixelProver {
         Self { bounds: SceneBounds::of(model), lights: (0..model.lights.len()).collect() }
     }
 
-    /// Encloses the colour of a pixel, until it is known to within an error, where 1 is white, as it is shown, or until
-    /// a limit is reached. `x` counts pixels from the left and `y` from the bottom.
+    /// Encloses the colour of a pixel, until the colour as shown is known to within `error`, where 1 is white, or
+    /// until a limit is reached. `x` counts pixels from the left and `y` from the bottom.
     pub fn pixel(
         &self,
         (model, depth): (&Model, Option<&Depth>),
@@ -149,7 +149,7 @@ impl PixelProver {
             if proof.is_within(error, display) || count + 4 > MAX_FOOTPRINTS {
                 return proof;
             }
-            // What edges leave open is in inverse proportion to the number of footprints.
+            // The uncertainty at edges is inversely proportional to the number of footprints.
             if count >= JUDGED && half * count as f64 > error * MAX_FOOTPRINTS as f64 {
                 return proof;
             }
@@ -181,8 +181,8 @@ fn proof(all: &[Footprint], count: usize) -> Proof {
     }
 }
 
-/// Returns the primary rays through a square of the image, given by its middle and half its width in pixels; `None` where
-/// the camera does not say.
+/// Returns the primary rays through a square of the image, given by its middle and half its width in pixels; `None`
+/// where the camera does not enclose them.
 pub(super) fn lines(camera: &Sensor, middle: [f64; 2], half: f64) -> Option<Line<Affine>> {
     let at = [0, 1].map(|side| Affine::variable(side, middle[side], half));
     camera.camera.footprint(ImagePoint { at, pixels: camera.pixels })

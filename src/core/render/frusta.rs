@@ -1,5 +1,5 @@
-//! The boxes that the rays of a packet may enter, for each sub-packet: the rays of a sub-packet lie closer together
-//! than those of the whole packet, and so may hit fewer objects.
+//! Tests of boxes against the sub-packets of a packet: the rays of a sub-packet lie closer together than those of the
+//! whole packet, and so may hit fewer objects.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, range, smaller};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket, split};
@@ -23,14 +23,14 @@ pub struct Frusta {
     low: [Each; 3],
     /// The greatest coordinates of the origins, in world units.
     high: [Each; 3],
-    /// The least distance along any ray in which its coordinate rises by 1; infinite where no ray rises.
+    /// The least distance along any ray over which its coordinate rises by 1; infinite where no ray rises.
     rises: [Each; 3],
-    /// The negative of the least distance along any ray in which its coordinate falls by 1; negative infinity where no
-    /// ray falls.
+    /// The negative of the least distance along any ray over which its coordinate falls by 1; negative infinity where
+    /// no ray falls.
     falls: [Each; 3],
-    /// The greatest distance along any ray in which its coordinate rises by 1; NaN unless all rays rise.
+    /// The greatest distance along any ray over which its coordinate rises by 1; NaN unless all rays rise.
     rises_at_most: [Each; 3],
-    /// The negative of the greatest distance along any ray in which its coordinate falls by 1; NaN unless all rays
+    /// The negative of the greatest distance along any ray over which its coordinate falls by 1; NaN unless all rays
     /// fall.
     falls_at_most: [Each; 3],
     /// The largest magnitude of the origins' coordinates, in world units.
@@ -104,8 +104,8 @@ kernels! {
         frusta
     }
 
-    /// Tests boxes against the sub-packets. Sets in `parts`, for each box, a bit for each sub-packet of which a ray may
-    /// enter the box; where a bit is 0, no ray of the sub-packet does.
+    /// Tests boxes against the sub-packets. Sets in `parts`, for each box, a bit for each sub-packet with a ray that
+    /// may enter the box. Where a bit is 0, no ray of the sub-packet enters the box.
     pub fn meet(frusta: &Frusta, boxes: &[(usize, Aabb)], parts: &mut [u32]) {
         for index in 0..boxes.len() {
             let (bounds, parts) = (boxes[index].1.with_slack(frusta.reach), &mut parts[index]);
@@ -125,7 +125,7 @@ kernels! {
             *parts = 0;
             for part in 0..PARTS {
                 // `SLACK` covers the rounding of the distances; `a_part_one_of_whose_rays_comes_into_a_box_is_told`
-                // below holds it.
+                // below tests this.
                 let may = (enters[part] <= leaves[part] * (1.0 + SLACK)) & (enters[part] < f64::INFINITY);
                 *parts |= u32::from(may) << part;
             }

@@ -1,6 +1,6 @@
-//! The brightness of an image, as its bytes have it.
+//! The brightness of an image's bytes.
 
-/// What is known of the bytes of an image.
+/// Counts of an image's bytes and pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Levels {
     /// The greatest byte.

@@ -1,4 +1,4 @@
-//! What the tracer reports to an observer: each ray, each test and each light, as it happens.
+//! The events and counts that the tracer reports to an observer.
 
 use crate::geometry::ray::Ray;
 use crate::scene::model::Object;
@@ -25,8 +25,8 @@ impl TraceObserver for () {
     const SEES: bool = false;
 }
 
-/// An observer behind `dyn`. Such observers share two compiled tracers: one for those that see events, and one for those that
-/// do not.
+/// An observer behind `dyn`. Such observers share two compiled tracers: one for those that see events, and one for
+/// those that do not.
 pub struct DynObserver<'o, const SEES: bool>(pub &'o mut dyn Receiver);
 
 /// The interface of a [`TraceObserver`] behind `dyn`.
@@ -71,10 +71,9 @@ pub enum Count {
     Culled(usize, usize),
     /// A pixel took a number of samples, where pixels differ in that.
     Sampled(u32),
-    /// A bound on the error of a pixel's colour is proven, where 1 is white: whether it is within the limit, and of how
-    /// many footprints.
+    /// The error of a pixel's colour is bounded.
     Bounded {
-        /// The bound.
+        /// The bound, where 1 is white.
         error: f64,
         /// Whether it is within the limit.
         is_certified: bool,
@@ -83,10 +82,10 @@ pub enum Count {
     },
     /// A pixel has used up its ray budget; it lacks at most this much light in any channel.
     Cut(f64),
-    /// This number of rays from the viewer lack light from mirrors or through glass, as its path is too long by the notes'
-    /// rules.
+    /// This number of rays from the viewer lack light from mirrors or through glass, because the notes' rules end its
+    /// path.
     Far(usize),
-    /// A pixel has a camera ray for which it could not be decided whether it hits the object of this index first.
+    /// A pixel has a camera ray for which it is undecided whether it hits the object of this index first.
     Undecided(usize, Doubt),
 }
 

@@ -19,10 +19,10 @@ use crate::render::footprint::PixelProver;
 use crate::scene::model::{Model, Object};
 use crate::world::sensor::{Adaptive, Sensor};
 
-/// The number of bounded objects from which on a BVH is faster than a list.
+/// The minimum number of bounded objects for which a BVH is faster than a list.
 pub(crate) const TREE: usize = 24;
 
-/// The number of objects from which on their bounds are computed on all threads.
+/// The minimum number of objects for which bounds are computed on all threads.
 const MANY: usize = 1 << 14;
 
 /// A model, with the decisions that depend on its objects and lights. Rays are traced through a plan.
@@ -30,7 +30,7 @@ pub struct Plan<'m> {
     /// The scene.
     pub model: &'m Model,
     /// The camera, initially the model's own. Three things may be changed afterwards: a fixed number of samples, the
-    /// sampler, and, in a plan for any ray, the size of the image. The plan depends on all others.
+    /// sampler, and, in a plan for any ray, the size of the image. The plan depends on everything else.
     pub camera: Sensor,
     /// The indices of the objects without bounds.
     pub(crate) unbounded: Vec<usize>,
@@ -46,7 +46,7 @@ pub struct Plan<'m> {
     pub(crate) has_media: bool,
     /// The objects that are small in the image, where the number of a pixel's samples depends on them.
     pub(crate) features: Option<Features>,
-    /// What proves the colours of pixels, where that is wanted.
+    /// The prover of pixels' colours, where that is wanted.
     pub(crate) prover: Option<PixelProver>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub depth: Option<Depth>,
@@ -56,7 +56,7 @@ pub struct Plan<'m> {
     pub bounces: usize,
     /// The lights that are sampled, and what is left out.
     pub needs: Needs,
-    /// The lights that a closed object keeps from all that is seen.
+    /// The lights that a closed object hides from all visible points.
     pub(crate) shut_out: Vec<ShutOut>,
 }
 
@@ -64,7 +64,7 @@ pub struct Plan<'m> {
 pub(crate) struct CostlyObjects {
     /// The objects, by their indices in the scene.
     pub tree: Bvh,
-    /// The number of them, at least 1.
+    /// Their number, at least 1.
     pub count: u32,
 }
 
@@ -85,8 +85,8 @@ impl<'m> Plan<'m> {
         Self::with(model, |_, _| Needs::all(model))
     }
 
-    /// Makes the plan for the image of a model's camera, of any number of samples, without the objects and lights that
-    /// can change no byte of it. Only rays through the image's pixels may be traced through it.
+    /// Makes the plan for the image of a model's camera, with any number of samples. It leaves out the objects and
+    /// lights that cannot change a byte of the image. Only rays through the image's pixels may be traced through it.
     pub fn for_picture(model: &'m Model) -> Self {
         Self::with(model, |bounds, depth| Needs::of(model, bounds, depth))
     }

@@ -75,8 +75,8 @@ impl Area {
     }
 }
 
-/// Lists the areas of a pass over an image in the order in which they are rendered: with blocks of pixels, or with single
-/// ones.
+/// Lists the areas of a pass over an image in the order in which they are rendered: with blocks of pixels, or with
+/// single pixels.
 fn areas([width, height]: [usize; 2], block: usize, is_final: bool) -> Vec<Area> {
     let wide = if block > 1 { width } else { AREA_SIZE };
     let corners =
@@ -96,7 +96,7 @@ struct Pass {
     areas: Vec<Area>,
 }
 
-/// Lists the passes over an image of pixels with so many samples.
+/// Lists the passes over an image with this many samples per pixel.
 fn passes(pixels: [usize; 2], samples: u32) -> impl Iterator<Item = Pass> {
     let all = [(BLOCK, 1), (1, 1), (1, samples)].into_iter().take(if samples > 1 { 3 } else { 2 });
     all.map(move |(block, rays)| Pass {
@@ -105,8 +105,8 @@ fn passes(pixels: [usize; 2], samples: u32) -> impl Iterator<Item = Pass> {
     })
 }
 
-/// The rest of an image that is rendered step by step on one thread, where [`render`] renders it in one go. Between two
-/// areas, the caller may do something else.
+/// The remaining areas of an image that is rendered step by step on one thread. Unlike with [`render`], the caller
+/// may do other work between two areas.
 #[derive(Clone, Debug)]
 pub struct Steps {
     /// The areas and the samples of their pixels, the last one first.
@@ -128,7 +128,7 @@ impl Steps {
         self.left.is_empty()
     }
 
-    /// Renders the next area by a plan of the image; `None` where the image is complete.
+    /// Renders the next area with a plan of the image; `None` where the image is complete.
     pub fn next(&mut self, plan: &mut Plan) -> Option<(Area, Vec<Rgb>)> {
         let (area, samples) = self.left.pop()?;
         plan.camera.samples = samples;

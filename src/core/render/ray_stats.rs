@@ -22,7 +22,7 @@ pub struct RayStats {
     sampled: [u64; SAMPLE_COUNTS],
 }
 
-/// The count of the possible numbers of samples of a pixel: the powers of two up to [`Sampler::MOST`].
+/// The number of possible sample counts of a pixel: the powers of two up to [`Sampler::MOST`].
 const SAMPLE_COUNTS: usize = Sampler::MOST.ilog2() as usize + 1;
 
 /// The pixels with proven bounds of their colours.
@@ -32,16 +32,16 @@ pub struct Proofs {
     pub certified: u64,
     /// The number of pixels that are not certified.
     pub open: u64,
-    /// The greatest error that any pixel that is not certified may have, where 1 is white.
+    /// The greatest possible error of a pixel that is not certified, where 1 is white.
     pub most: f64,
-    /// The sum of the errors that pixels that are not certified may have, each rounded up, in units of which [`PARTS`]
-    /// are white: a whole number, so that the order of the sum makes no difference.
+    /// The sum of the possible errors of the pixels that are not certified, each rounded up, in units of which
+    /// [`PARTS`] are white: an integer, so the order of the sum makes no difference.
     sum: u64,
     /// The number of footprints that were examined.
     pub footprints: u64,
 }
 
-/// The number of units in white, in which errors are summed.
+/// The number of units in white, for sums of errors.
 const PARTS: f64 = 1e9;
 
 impl Proofs {
@@ -59,7 +59,7 @@ impl Proofs {
         self.certified + self.open
     }
 
-    /// Returns the mean error that the pixels that are not certified may have, where 1 is white.
+    /// Returns the mean possible error of the pixels that are not certified, where 1 is white.
     pub fn mean(&self) -> f64 {
         if self.open == 0 { 0.0 } else { self.sum as f64 / PARTS / self.open as f64 }
     }

@@ -15,8 +15,8 @@ use rayon::ThreadPool;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The stack size of a thread in bytes that is enough for the deepest chain of reflections that the ray budget allows. The
-/// system commits only what is used.
+/// A thread's stack size in bytes, enough for the deepest chain of reflections that the ray budget allows. The system
+/// commits only the memory that is used.
 pub const STACK: usize = 128 << 20;
 
 /// Callbacks that stop a renderer and report its progress.
@@ -108,7 +108,8 @@ impl Renderer {
         });
     }
 
-    /// Renders tiles of a band by a function for those of one strip. It is compiled in this crate, whatever the observer.
+    /// Renders the tiles of a band with a function for those of one strip. This code is compiled in this crate, once
+    /// for all observers.
     fn fill_by(
         &self,
         plan: &Plan,
@@ -149,8 +150,8 @@ impl Renderer {
         self.run(|| parallel::for_each_in_order(band.strips.len(), &strip));
     }
 
-    /// Renders a part of the image with its light before it is clamped and rounded: for each pixel, the value that `of`
-    /// makes from its light, in rows from the top, each from the left. Returns `None` if the overseer stops it.
+    /// Renders a part of the image without clamping or rounding its light. Returns the values that `of` makes from
+    /// the light of each pixel, in rows from the top, each from the left, or `None` if the overseer stops it.
     /// Observers are passed to `watched` as in [`bands`](Self::bands).
     pub fn light<W: ImageObserver, T: Clone + Default + Send>(
         &self,
@@ -183,8 +184,8 @@ impl Renderer {
         finished.is_continue().then_some(all)
     }
 
-    /// Renders a part of the image as [`light`](Self::light) does, as files of full range have it: red, green and blue of each
-    /// pixel.
+    /// Renders a part of the image as [`light`](Self::light) does, with the values of files of full range: red, green
+    /// and blue of each pixel.
     pub fn colours<W: ImageObserver>(
         &self,
         plan: &Plan,
@@ -219,7 +220,8 @@ impl Renderer {
         finished.is_continue().then_some(pixels)
     }
 
-    /// Runs other work on the threads; on those of the caller once the renderer's own have been [left](Self::leave_threads).
+    /// Runs other work on the renderer's threads, or on the caller's once the renderer's own have been
+    /// [left](Self::leave_threads).
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match &self.pool {
             Some(pool) if !self.is_left.load(Ordering::Relaxed) => parallel::run_on(pool, work),
@@ -227,7 +229,7 @@ impl Renderer {
         }
     }
 
-    /// Leaves the threads to tiles that nobody waits for any more, which may take hours: no other work waits for them.
+    /// Leaves the threads to abandoned tiles, which may take hours. No other work waits for them.
     pub fn leave_threads(&self) {
         self.is_left.store(true, Ordering::Relaxed);
     }
@@ -250,7 +252,7 @@ type TileSink<'s> = dyn FnMut(usize, &[[usize; 2]], View) + 's;
 /// An observer with which images are rendered. The code that traces rays for it is compiled in this crate, and not
 /// again in each crate that renders.
 pub trait ImageObserver: TraceObserver + Default {
-    /// Computes the colours of tiles, with a new observer, which is returned; until `stops` returns true, which breaks.
+    /// Computes the colours of tiles with a new observer. Returns the observer, and `Break` if `stops` returned true.
     fn trace(
         plan: &Plan,
         cpu: Cpu,
@@ -261,7 +263,7 @@ pub trait ImageObserver: TraceObserver + Default {
     ) -> (Self, ControlFlow<()>);
 }
 
-/// Does what [`ImageObserver::trace`] does.
+/// Implements [`ImageObserver::trace`].
 fn trace<W: TraceObserver + Default>(
     plan: &Plan,
     cpu: Cpu,

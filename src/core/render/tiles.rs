@@ -6,19 +6,19 @@ use std::mem::take;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The width and height of a tile in pixels, whose rays are traced together. Tiles at the right and lower edges may be
-/// smaller.
+/// The width and height of a tile in pixels. The rays of a tile are traced together. Tiles at the right and lower
+/// edges may be smaller.
 pub const TILE: usize = 16;
 
-/// The number of tiles that are traced together where pixels differ in their numbers of samples: few pixels of a tile may
-/// go on, and packets are to be full.
+/// The number of tiles that are traced together where pixels differ in their numbers of samples. Few pixels of a tile
+/// may take more samples, and packets should be full.
 pub const TOGETHER: usize = 8;
 
 /// The width and height of a block, in pixels.
 pub(crate) const SIDE: usize = 8;
 
-/// Calls a function for each run of up to eight pixels of a tile, with its columns and its row. The runs go through blocks of
-/// 8 x 8 pixels, so that pixels that follow each other are close together.
+/// Calls a function for each run of up to eight pixels of a tile, with its columns and its row. The runs go through
+/// blocks of 8 x 8 pixels, so consecutive pixels are close together.
 #[inline]
 pub(crate) fn for_each_run(
     columns: Range<usize>,
@@ -58,7 +58,7 @@ pub struct Band {
     pub columns: Range<usize>,
     /// The rows, counted from the top of the whole image.
     pub rows: Range<usize>,
-    /// The rows of tiles, from the top. A thread that renders locks one only while it adds a tile.
+    /// The rows of tiles, from the top. A rendering thread locks a row only while it adds a tile.
     pub strips: Arc<[Mutex<Strip>]>,
 }
 
@@ -94,8 +94,8 @@ impl Band {
         Self { columns, rows, strips: self.strips.iter().map(copy).collect() }
     }
 
-    /// Takes the bytes of the pixels, in rows from the top: in one piece of up to `at_once` bytes, or in one for each row
-    /// of tiles.
+    /// Takes the bytes of the pixels, in rows from the top: in one piece if they are at most `at_once`, or else in
+    /// one piece for each row of tiles.
     pub fn bytes(&self, at_once: usize) -> Vec<Vec<u8>> {
         let taken = self.strips.iter().map(|strip| take(&mut locked(strip).pixels));
         if 3 * self.columns.len() * self.rows.len() <= at_once {
@@ -141,7 +141,7 @@ enum Done {
 }
 
 impl Tiles {
-    /// Makes the record of an image of this width and height in pixels, of which nothing is rendered.
+    /// Makes the record of an image of this width and height in pixels, without rendered tiles.
     pub fn none([width, height]: [usize; 2]) -> Self {
         Self { width, height, strips: Vec::new() }
     }
@@ -182,7 +182,7 @@ impl Tiles {
             .sum()
     }
 
-    /// Returns the number of rows to the end of the last row of tiles of which anything is rendered.
+    /// Returns the number of rows of pixels to the end of the last row of tiles with a rendered tile.
     pub fn rows_begun(&self) -> usize {
         let strips = self.strips.iter().rposition(|strip| !matches!(strip, Done::Nothing));
         strips.map_or(0, |last| self.height.min((last + 1) * TILE))

@@ -18,7 +18,7 @@ pub(super) struct Crossings<N> {
 pub(super) fn crossings<N: Number>(law: Law, surface: &HitPoints<N>, dir: [N; 3]) -> Option<Crossings<N>> {
     let (n, one) = (N::constant, N::constant(1.0));
     let cosine = -dot(dir, surface.normal);
-    // Bent normals may face away from the rays, and are turned.
+    // Bent normals may face away from the rays; the tracer then turns them.
     if surface.unbent.is_some() && cosine.range().low <= N::of(0.0) {
         return None;
     }

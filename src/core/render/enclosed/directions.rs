@@ -5,8 +5,8 @@ use glam::DVec2;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
 
-/// Encloses the point of the unit disc that two numbers from 0 to 1 choose, as [`sample::on_disc`](crate::world::sample::on_disc)
-/// does.
+/// Encloses the point of the unit disc that two numbers from 0 to 1 choose, as
+/// [`sample::on_disc`](crate::world::sample::on_disc) does.
 pub(super) fn in_disc<N: Number>(numbers: DVec2) -> [N; 2] {
     let n = N::constant;
     let (sin, cos) = (n(2.0) * N::enclosing(Interval::pi()) * n(numbers.y)).sin_cos();

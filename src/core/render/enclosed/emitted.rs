@@ -1,4 +1,4 @@
-//! The light of what is spread out that reaches the points of a surface.
+//! The light of extended sources that reaches the points of a surface.
 
 use super::directions::unit;
 use super::light::{LightPoints, power};
@@ -13,11 +13,12 @@ use glam::DVec2;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
 
-/// Encloses what a light that is spread out adds to the colour of points; `None` where it is open. `dir` is the unit vector
-/// along the rays that see the points.
+/// Encloses the contribution of an extended light to the colour of points; `None` where it is open. `dir` is the unit
+/// vector along the rays that see the points.
 ///
-/// A sample is enclosed by what its point adds, and the mean over a panel, a ball or a cone by what all points add.
-/// Where that is open, and for the mean over a sky, the light is at least none, and at most the most that it can be.
+/// A sample is enclosed by the contribution of its point, and the mean over a panel, a ball or a cone by the
+/// contributions of all points. Where these are open, and for the mean over a sky, the light lies between nothing and
+/// its greatest possible value.
 pub(super) fn shine<N: Number>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
@@ -57,7 +58,7 @@ pub(super) fn shine<N: Number>(
     });
     let of = Shining { scene, index, surface, dir, shininess: has_highlight.then_some(shininess) };
     let extent = emitter.extent();
-    // A sky's samples have its colours.
+    // The samples of a sky include its colours.
     let sent = if matches!(extent, Extent::Sky { .. }) { [N::constant(1.0); 3] } else { sent };
     let lit = match seen {
         LightPoints::All => match &extent {
@@ -73,7 +74,7 @@ pub(super) fn shine<N: Number>(
     let Some(lit) = lit else { return Some(any) };
     Some(per_axis(|channel| {
         let width = |of: N| of.mean().coarse().width();
-        // Near a light, its points say less than all that there may be.
+        // Near a light, the enclosure by its points may be wider than the general bound.
         if width(lit[channel]) <= width(any[channel]) { lit[channel] } else { any[channel] }
     }))
 }
@@ -101,7 +102,7 @@ impl<N: Number> Shining<'_, N> {
     fn at(&self, points: &Points<N>, sent: &Colour<N>) -> Option<Colour<N>> {
         let Points { toward, are_far, light } = points;
         let rise = dot(*toward, self.surface.normal);
-        // Light from behind the surface may face the shading normals only.
+        // Light from behind the surface may face only the shading normals.
         let unbent = self.surface.unbent;
         let above = unbent.map_or(rise, |unbent| rise.min(dot(*toward, unbent))).range();
         if above.high <= N::of(0.0) {

@@ -1,4 +1,4 @@
-//! The facet of a rough surface that a sample chooses, in the words of the tracer's own facets.
+//! The facet of a rough surface that a sample chooses, with the names of the tracer's own code.
 
 use super::directions::{in_disc, orthonormal_pair, unit};
 use super::number::Number;

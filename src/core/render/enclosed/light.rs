@@ -11,22 +11,22 @@ use crate::world::rules::{Falloff, Rules};
 use crate::world::sample::Sample;
 use tabray_exact::scalar::{cross, dot, per_axis};
 
-/// The greatest exponent of a highlight that is taken as a product.
+/// The greatest exponent for which a highlight is computed by multiplication.
 const MAX_POWER: i32 = 1000;
 
-/// The points of lights with a size that are seen.
+/// The choice of points of lights with a size.
 #[derive(Clone, Copy)]
 pub enum LightPoints {
     /// The points in the middle.
     Middle,
     /// The points that a sample chooses.
     Of(Sample),
-    /// All of them, of whose light the mean is taken.
+    /// All points, with the mean of their light.
     All,
 }
 
-/// Encloses what the light of this index adds to the colour of points; `None` where it is open. `dir` is the unit vector
-/// along the rays that see the points.
+/// Encloses the contribution of the light of this index to the colour of points; `None` where it is open. `dir` is
+/// the unit vector along the rays that see the points.
 pub(super) fn shine<N: Number>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
@@ -43,7 +43,7 @@ pub(super) fn shine<N: Number>(
     let toward = toward(&**light, (index, seen), surface.at)?;
     let distance = dot(toward, toward).sqrt();
     let cosine = dot(toward, surface.normal) / distance;
-    // Light from behind the surface may face the shading normals only.
+    // Light from behind the surface may face only the shading normals.
     let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent))).range();
     if above.high <= zero {
         return Some(black);
@@ -74,7 +74,7 @@ pub(super) fn shine<N: Number>(
     Some(lit.map(N::mean_over_light))
 }
 
-/// Encloses the vectors from points to a light: to its own point, or to the points seen of the disc around it that
+/// Encloses the vectors from points to a light: to its location, or to the chosen points of the disc around it that
 /// faces the points. `None` where the vectors are open.
 fn toward<N: Number>(
     light: &(dyn PacketLight + 'static),
@@ -96,12 +96,13 @@ fn toward<N: Number>(
     Some(per_axis(|axis| toward[axis] + (x * across[axis] + y * up[axis])))
 }
 
-/// Encloses the vectors to all points of a disc of this radius that faces the points from which `toward` leads to its middle.
+/// Encloses the vectors to all points of a disc of this radius that faces its viewers. `toward` leads to the disc's
+/// middle.
 pub(super) fn on_disc<N: Number>(toward: [N; 3], radius: N) -> [N; 3] {
     let magnitude = |axis: &usize| toward[*axis].coarse().middle().abs();
     let farthest = (0..3).min_by(|one, other| magnitude(one).total_cmp(&magnitude(other)));
     let axis = per_axis(|axis| N::constant(if Some(axis) == farthest { 1.0 } else { 0.0 }));
-    // A mean over the disc does not depend on how it is turned, so any two vectors do that are perpendicular.
+    // A mean over the disc does not depend on how it is turned, so any two perpendicular vectors serve.
     let sight = unit(toward);
     let across = unit(cross(sight, axis));
     let up = cross(sight, across);

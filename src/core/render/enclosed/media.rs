@@ -1,13 +1,13 @@
-//! Light on its way through media that absorb it, as in the tracer. The medium of a path is that of the object that the
-//! lines leave on its inside, or otherwise that of the object that they hit on its inside.
+//! The absorption of light in media, as in the tracer. The medium of a path belongs to the object that the lines
+//! leave on its inside, or otherwise to the object that they hit on its inside.
 
 use super::number::Number;
 use super::scene::{Colour, EnclosedScene, Path};
 use crate::world::interface::Medium;
 use tabray_exact::scalar::per_axis;
 
-/// Returns the medium that absorbs light between the start of lines and the object that they hit, if any, on its inside
-/// or on its outside.
+/// Returns the medium that absorbs light between the start of lines and their hit. `met` is the object hit, if any,
+/// and whether it is hit on its inside.
 pub(super) fn between<N: Number>(
     scene: &EnclosedScene,
     path: &Path<N>,
@@ -20,7 +20,7 @@ pub(super) fn between<N: Number>(
     left.or_else(|| met.and_then(|(object, is_inside)| inside(object, is_inside)))
 }
 
-/// Encloses the fractions of light that pass a way through a medium, of this length in world units; `None` is endless.
+/// Encloses the fractions of light that pass through a medium over a length in world units; `None` is endless.
 pub(super) fn passed<N: Number>(medium: &Medium, length: Option<N>) -> Colour<N> {
     let (zero, one) = (N::constant(0.0), N::constant(1.0));
     let left = medium.left();

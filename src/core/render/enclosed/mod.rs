@@ -1,12 +1,12 @@
-//! The colours that rays return, by the rules of light in numbers that enclose them.
+//! Enclosures of the colours of rays: the rules of light, evaluated in numbers that enclose.
 //!
-//! This is a second evaluation of a scene, beside that of images, from the scene's numbers on. It shares with the
-//! tracer the rules, the equations of shapes, and the plugins, in which shaders and lights enclose their own light. In
-//! [`Interval`]s, it proves the colour that one ray returns; in [`Affine`] numbers, the mean of the colours of all rays
-//! through a [footprint](super::footprint).
+//! This is a second evaluation of a scene, separate from that of images. It shares with the tracer the rules, the
+//! equations of shapes, and the plugins, in which shaders and lights enclose their own light. In [`Interval`]s, it
+//! proves the colour that one ray returns; in [`Affine`] numbers, the mean of the colours of all rays through a
+//! [footprint](super::footprint).
 //!
-//! It follows each hit, shadow ray, mirror and pane. Where a decision is open, such as which of two objects is seen, the
-//! colour is anything that it would be either way; where nothing else is known, anything that the scene's brightness allows.
+//! It follows each hit, shadow ray, mirror and pane. Where a decision is open, such as which of two objects is seen,
+//! the colour is enclosed for both outcomes; where nothing else is known, by the scene's brightness.
 //!
 //! [`Interval`]: tabray_exact::interval::Interval
 //! [`Affine`]: tabray_exact::affine::Affine

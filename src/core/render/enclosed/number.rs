@@ -41,7 +41,7 @@ pub trait Endpoint: Precise {
     /// Encloses the look of an object at a point.
     fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>>;
 
-    /// Encloses the unit normals to which a shader bends outward ones at a point.
+    /// Encloses the unit normals that a shader makes of outward ones at a point.
     fn bent(
         shader: &(dyn EnclosedShader + 'static),
         at: &PointBounds<Self>,
@@ -107,7 +107,7 @@ pub trait Number: Scalar + PartialEq {
     /// Tells whether the values are known without any uncertainty, so that equal numbers are the same quantity.
     fn is_exact(self) -> bool;
 
-    /// Returns what may be either of two quantities.
+    /// Returns a number that encloses both quantities.
     fn hull(self, other: Self) -> Self {
         if self == other { self } else { Self::enclosing(self.range().hull(other.range())) }
     }
@@ -131,8 +131,8 @@ pub trait Number: Scalar + PartialEq {
     /// Encloses vectors along the normals at points of a part of a shape.
     fn gradient(shape: &dyn ProofMethods, at: [Self; 3], part: usize) -> [Self; 3];
 
-    /// Encloses the unit normals with which points of a part are shaded, given those of the surface; `None` where they are
-    /// open.
+    /// Encloses the unit normals with which points of a part are shaded, given those of the surface; `None` where
+    /// they are open.
     fn shading_normal(
         shape: &dyn ProofMethods,
         at: [Self; 3],
@@ -196,7 +196,7 @@ impl<F: Endpoint> Number for Interval<F> {
             if !goes_on {
                 return;
             }
-            // What is cut off at its edge does not hide what lies behind.
+            // Beyond its edge, a surface does not hide what lies behind it.
             let behind = Line { origin: line.at(at), dir: line.dir };
             (found, part) = proofs.first_hit(&behind, Some(part));
             start = Some(at);

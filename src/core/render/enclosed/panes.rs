@@ -51,7 +51,7 @@ impl<N: Number> Passes<N> {
     }
 }
 
-/// Where lines end on a light: between these two t.
+/// The range of t in which lines end on a light.
 #[derive(Clone, Copy)]
 pub(super) struct Ends<F> {
     pub first: F,
@@ -59,7 +59,7 @@ pub(super) struct Ends<F> {
 }
 
 impl<F: Float> Ends<F> {
-    /// At one t.
+    /// Returns the range of a single t.
     pub fn at(t: F) -> Self {
         Self { first: t, last: t }
     }
@@ -84,7 +84,7 @@ pub(super) fn passed<N: Number>(
         }
     }
     open.extend(panes.interrupted());
-    // The object as which a light is seen is convex, and not in the way of its points.
+    // The object that shows a light is convex, and does not hide the light's points.
     let source = &scene.model.lights[light].args;
     let is_source = |object: &usize| {
         let body = &objects[*object].args;
@@ -115,21 +115,21 @@ pub(super) fn passed<N: Number>(
 
 /// The panes of glass on lines.
 struct Panes<N: Number> {
-    /// The objects whose they are, and where they are or may be.
+    /// For each pane, its object and the range of t in which it is or may be.
     at: Vec<(usize, Interval<N::End>)>,
-    /// The objects whose media absorb light, and where it passes through these.
+    /// For each stretch in an absorbing medium, its object and its range of t.
     ways: Vec<(usize, Interval<N::End>)>,
     /// The fraction of light that passes, if there is any pane.
     passed: Option<Colour<N>>,
 }
 
 impl<N: Number> Panes<N> {
-    /// Tells whether any pane may be at a t.
+    /// Tells whether any pane may be in a range of t.
     fn are_at(&self, t: Interval<N::End>) -> bool {
         self.at.iter().any(|(_, pane)| meet(*pane, t))
     }
 
-    /// Returns the objects in whose media there may be panes of others, between which light passes freely.
+    /// Returns the objects whose media may contain panes of others, between which light passes freely.
     fn interrupted(&self) -> impl Iterator<Item = usize> {
         let is_interrupted = |(object, way): &&(usize, Interval<N::End>)| {
             self.at.iter().any(|(other, pane)| other != object && meet(*pane, *way))
@@ -175,7 +175,7 @@ impl<N: Number> Panes<N> {
                     ));
                 }
             };
-            // A medium absorbs what leaves the object on its inside, or hits it there.
+            // A medium absorbs light that leaves the object on its inside, or hits it there.
             let from_inside = onward.is_inside && onward.leaves.is_some_and(|place| place.object == object);
             let to_inside = match (&medium, wall) {
                 (Some(_), Some((at, place))) => {
@@ -194,7 +194,7 @@ impl<N: Number> Panes<N> {
             }
             let Some((at, place)) = wall else { return Ok(()) };
             let range = at.range();
-            // Of panes in one place, one stands for all: that is not decided here.
+            // Panes in one place count as one. That is not decided here.
             if range.high >= ends.first || self.are_at(range) {
                 return Err(range.low);
             }

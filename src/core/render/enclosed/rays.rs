@@ -19,9 +19,9 @@ use tabray_exact::scalar::{dot, per_axis};
 pub struct Limits {
     /// The number of hits after which branches are no longer followed, but bounded.
     pub hits: usize,
-    /// The number of rays one after the other, each continuing the last, after which they are bounded.
+    /// The number of consecutive rays, each continuing the last, after which they are bounded.
     pub depth: usize,
-    /// The number of places beyond which a ray that may hit any of them first is bounded.
+    /// The maximum number of places that a ray may hit first; a ray with more is bounded.
     pub places: usize,
     /// A branch that can add no more than this to a pixel's channel is bounded and not followed.
     pub negligible: f64,
@@ -29,7 +29,7 @@ pub struct Limits {
     pub tolerable: f64,
 }
 
-/// Rays.
+/// A set of rays whose colours are enclosed together.
 struct Ray<N> {
     path: Path<N>,
     /// The length of the lines' direction, in world units.
@@ -46,13 +46,13 @@ struct Ray<N> {
 /// Rays that continue from a surface.
 struct Onward<N> {
     dir: [N; 3],
-    /// Whether the surface keeps the rays apart as they were, so that they show patches as long as they did.
+    /// Whether the surface does not change the spread of the rays, so they may go on showing patches.
     keeps: bool,
     /// Whether they pass through the surface.
     through: bool,
 }
 
-/// Traces rays that start as one.
+/// Traces a single ray, or all rays through a footprint at once.
 pub struct EnclosingTracer<'s> {
     scene: &'s EnclosedScene<'s>,
     limits: Limits,
@@ -63,7 +63,7 @@ pub struct EnclosingTracer<'s> {
 }
 
 impl<'s> EnclosingTracer<'s> {
-    /// Returns a tracer of one ray from the viewer, or of all through a footprint.
+    /// Returns a tracer of one ray from the viewer, or of all rays through a footprint.
     pub fn new(scene: &'s EnclosedScene<'s>, limits: Limits, lights: LightPoints) -> Self {
         Self { scene, limits, lights, hits: 0, is_spent: false, is_open: false }
     }
@@ -142,7 +142,7 @@ impl<'s> EnclosingTracer<'s> {
         Some(any.unwrap_or(black))
     }
 
-    /// Encloses the colours that rays return which hit nothing.
+    /// Encloses the colours of rays that hit nothing.
     fn background<N: Number>(&self, ray: &Ray<N>) -> Colour<N> {
         let Some(background) = &self.scene.model.background else { return [N::constant(0.0); 3] };
         let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
@@ -151,7 +151,7 @@ impl<'s> EnclosingTracer<'s> {
         absorbed(seen, media::between(self.scene, &ray.path, None), None)
     }
 
-    /// Encloses the colours that rays return that hit a place at t; `None` where the colours are open.
+    /// Encloses the colours of rays that hit a place at t; `None` where the colours are open.
     fn seen<N: Number>(&mut self, ray: &Ray<N>, t: N, place: Place) -> Option<Colour<N>> {
         let interface = self.scene.model.objects[place.object].material.interface.as_deref();
         let mut any = None;
@@ -189,8 +189,8 @@ impl<'s> EnclosingTracer<'s> {
         Some(colour)
     }
 
-    /// Encloses the colours that rays return which an interface divides. For a rough surface, the facet of one sample
-    /// is enclosed, not the mean over all facets.
+    /// Encloses the colours of rays that an interface divides. For a rough surface, the facet of one sample is
+    /// enclosed, not the mean over all facets.
     fn divided<N: Number>(
         &mut self,
         ray: &Ray<N>,
@@ -241,7 +241,7 @@ impl<'s> EnclosingTracer<'s> {
         Some(colour)
     }
 
-    /// Encloses the light that points return by themselves.
+    /// Encloses the light of points themselves, without that of continued rays.
     fn own<N: Number>(&self, ray: &Ray<N>, travelled: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
         let toward = per_axis(|axis| ray.path.line.dir[axis] / ray.length);
         let mut colour = surface.ambient;
@@ -257,7 +257,7 @@ impl<'s> EnclosingTracer<'s> {
         Some(per_axis(|channel| rules.after(travelled, colour[channel])))
     }
 
-    /// Encloses the colours that rays return which continue from a surface. Their light is multiplied by `factor`.
+    /// Encloses the colours of rays that continue from a surface. Their light is multiplied by `factor`.
     fn secondary<N: Number>(
         &mut self,
         ray: &Ray<N>,
@@ -275,14 +275,14 @@ impl<'s> EnclosingTracer<'s> {
         self.colour(&Ray { path, length, travelled, weight, depth, shows_patches })
     }
 
-    /// Returns all colours up to a magnitude, where nothing else is known about the rays' colours; `None` where that is
-    /// of no use.
+    /// Returns all colours up to a magnitude, where nothing else is known about the rays' colours; `None` where that
+    /// is beyond the tolerable.
     fn open<N: Number>(&mut self, ray: &Ray<N>, most: f64) -> Option<Colour<N>> {
         self.is_open = true;
         (ray.weight * most <= self.limits.tolerable).then(|| up_to(most))
     }
 
-    /// Bounds the magnitude of what rays return.
+    /// Bounds the magnitude of the rays' colours.
     fn bound<N: Number>(&self, ray: &Ray<N>) -> f64 {
         let most = match (ray.path.leaves, self.scene.depth) {
             (Some(place), Some(depth)) => depth.beyond(Some(place.object)),
@@ -291,7 +291,7 @@ impl<'s> EnclosingTracer<'s> {
         self.over_path(ray, 0.0, most)
     }
 
-    /// Bounds the magnitude of what rays return with this first hit.
+    /// Bounds the magnitude of the colours of rays with this first hit.
     fn bound_at<N: Number>(&self, ray: &Ray<N>, hit: &Hit<N>, place: Place) -> f64 {
         let most = self.scene.depth.map_or(self.scene.bounds.most, |depth| depth.objects[place.object].hit);
         self.over_path(ray, Interval::point(hit.low()).coarse().low, most)

@@ -1,4 +1,4 @@
-//! The points of lights that are spread out which samples see.
+//! The points that samples choose on extended lights.
 
 use super::directions::{orthonormal_pair, unit};
 use super::light::on_disc;
@@ -32,8 +32,8 @@ impl<N: Number> Points<N> {
     }
 }
 
-/// Encloses the points that two numbers from 0 to 1 choose, as points of a surface see them. `None` where they are open, and
-/// no points where there are none.
+/// Encloses the points that two numbers from 0 to 1 choose, as points of a surface see them. `None` where they are
+/// open, and `Some(None)` where the sample has no point.
 pub(super) fn chosen<N: Number>(
     extent: &Extent,
     surface: &HitPoints<N>,
@@ -91,8 +91,8 @@ fn on_panel<N: Number>(panel: &Panel, at: [N; 3], numbers: DVec2) -> Option<Opti
     Some(Some(Points::even(toward, solid_angle / N::enclosing(Interval::pi()))))
 }
 
-/// Encloses the vectors to the points of a rectangle that two numbers choose by solid angle, and the solid angle, in the words
-/// of [`Panel::sample`]'s source. `between` leads to its middle.
+/// Encloses the vectors to the points of a rectangle that two numbers choose by solid angle, and the solid angle,
+/// with the names of [`Panel::sample`]'s source. `between` leads to its middle.
 fn on_rectangle<N: Number>(between: [N; 3], half: [DVec3; 2], numbers: DVec2) -> Option<([N; 3], N)> {
     let (n, one, zero) = (N::constant, N::constant(1.0), N::of(0.0));
     let half: [[N; 3]; 2] = half.map(constants);
@@ -151,13 +151,13 @@ pub(super) struct Round<N: Number> {
     /// The vectors to its middle.
     pub middle: [N; 3],
     pub distance: N,
-    /// What it reaches around its middle.
+    /// The radius around its middle.
     pub radius: N,
     /// The cosine of half the angle at which it is seen.
     cosine: N,
-    /// Where lines to a disc around its middle end, behind which it looks the same.
+    /// The ends of lines to the disc around its middle that looks the same.
     pub ends: Ends<N::End>,
-    /// The light that a surface gets that faces the whole light, at a radiance of 1, and the sum of the light of all
+    /// At a radiance of 1, the light on a surface that faces the whole light, and the sum of the light of all
     /// samples, in the unit of an [`Emitter`](crate::world::emitter::Emitter)'s samples.
     pub light: [N; 2],
 }
@@ -192,7 +192,7 @@ impl<N: Number> Round<N> {
         }
     }
 
-    /// Returns the vectors to a disc around its middle behind which it looks the same.
+    /// Returns the vectors to the disc around its middle that looks the same.
     pub fn disc(&self) -> [N; 3] {
         on_disc(self.middle, self.radius / self.cosine)
     }
@@ -210,8 +210,8 @@ fn on_ball<N: Number>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<
     Some(Points::even(per_axis(|axis| distance * dir[axis]), light))
 }
 
-/// Encloses the direction that a sample of [`SkyLight`](crate::world::sky_light::SkyLight) chooses for two numbers from 0 to 1, and
-/// its light.
+/// Encloses the direction that a sample of [`SkyLight`](crate::world::sky_light::SkyLight) chooses for two numbers
+/// from 0 to 1, and its light.
 fn in_sky<N: Number>(
     (background, map): (&dyn Background, Option<&SkyMap>),
     normal: [N; 3],

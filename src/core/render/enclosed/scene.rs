@@ -1,4 +1,4 @@
-//! A scene as proofs of colours look at it: what lines may hit.
+//! A scene for proofs of colours: the objects that lines may hit.
 
 use super::number::{Hit, Number, coarse};
 use crate::geometry::aabb::{Aabb, SLACK};
@@ -61,7 +61,7 @@ impl SceneBounds {
 pub struct EnclosedScene<'a> {
     /// The model.
     pub model: &'a Model,
-    /// The lights that count, by their indices.
+    /// The indices of the lights that count.
     pub lights: &'a [usize],
     /// How rays continue, where any do.
     pub depth: Option<&'a Depth>,
@@ -69,7 +69,7 @@ pub struct EnclosedScene<'a> {
     pub bounds: &'a SceneBounds,
     /// The window through which samples look, if they show patches of surfaces.
     pub window: Option<Window>,
-    /// Whether a ray may have met a shape without an equation first.
+    /// Whether the first hit of a ray may be on a shape without an equation.
     pub meets_uncertified: Cell<bool>,
 }
 
@@ -127,7 +127,7 @@ impl EnclosedScene<'_> {
             });
         }
         all.retain(|(hit, _)| hit.low() <= end);
-        // Of several at exactly the same distance, the first in the file is seen.
+        // Of several hits at exactly the same distance, the one of the first object in the file is seen.
         if let Some((first @ Hit::Certain(at), _)) = all.first().copied()
             && at.is_exact()
             && all.iter().all(|(hit, _)| *hit == first)

@@ -12,7 +12,7 @@ use crate::world::surface_point::PointBounds;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
 
-/// A patch of a surface of which the mean is shown.
+/// A patch of a surface, whose mean colour is shown.
 struct SeenPatch<F> {
     /// The maximum distance of the points from the middle, in world units along each axis.
     reach: f64,
@@ -35,8 +35,9 @@ pub(super) struct HitPoints<N> {
 }
 
 impl<N: Number> HitPoints<N> {
-    /// Returns the points at t of lines, once for each way that the normals may face; `None` where these or the look are
-    /// open. Through a window, at these lengths of the path before the lines, a shader's look is a mean over a patch.
+    /// Returns the points at t of lines, once for each way that the normals may face; `None` where the normals or the
+    /// look are open. `window` has the samples' window and the path lengths before the lines: with it, a shader's
+    /// look is a mean over a patch.
     pub fn facing(
         scene: &EnclosedScene,
         (line, length_of_dir): (&Line<N>, N),
@@ -92,7 +93,7 @@ impl<N: Number> HitPoints<N> {
         patch: Option<&SeenPatch<N::End>>,
     ) -> Option<Self> {
         let shape = object.shape.proven()?;
-        // What is mirrored is mirrored by the shading normal, too.
+        // Mirrors use the shading normal, too.
         let normal = N::shading_normal(shape, at, place.part, own)?;
         let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
         let (sees, outward) = (object.shader.sees(), ranges(outward));
@@ -112,7 +113,7 @@ impl<N: Number> HitPoints<N> {
         let point = PointBounds { patch: bounds, ..seen(at_ranges) };
         let look = N::End::look(object, &point)?;
         let normal = if object.shader.bends() {
-            // Those of the point, not the mean over a patch.
+            // The normals are those of the point, not the mean over a patch.
             let mut point = seen(ranges(at));
             if sees.tangents {
                 point.tangents = tangents(&object.shape, place.part, point.position, outward);
@@ -141,11 +142,11 @@ impl<N: Number> HitPoints<N> {
         })
     }
 
-    /// Returns the directions in which rays along `dir` are mirrored, as long as these; `None` where they are open.
+    /// Returns the mirrored directions of rays along `dir`, with the same length; `None` where they are open.
     pub fn mirrored(&self, dir: [N; 3]) -> Option<[N; 3]> {
         let mirrored = rules::mirrored(dir, self.normal);
         let Some(unbent) = self.unbent else { return Some(mirrored) };
-        // What bent normals mirror through the surface is turned back.
+        // A direction that bent normals mirror through the surface is turned back.
         let through = (dot(mirrored, unbent) * dot(dir, unbent)).range();
         if through.low > N::of(0.0) {
             Some(rules::mirrored(mirrored, unbent))

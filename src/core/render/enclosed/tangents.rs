@@ -7,11 +7,11 @@ use crate::world::surface_point::{NEAR, size_of};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 
-/// More than the rounding errors of directions that are found so.
+/// An upper limit on the rounding errors of directions found by comparison.
 const ROUNDING: f64 = 1e-8;
 
-/// Encloses the unit directions in which u and v grow at points of a part of a shape with these unit normals; `None` where they
-/// are open.
+/// Encloses the unit directions in which u and v grow at points of a part of a shape with these unit normals; `None`
+/// where they are open.
 pub(super) fn tangents<F: Endpoint>(
     shape: &AnyShape,
     part: usize,
@@ -27,7 +27,7 @@ pub(super) fn tangents<F: Endpoint>(
             proofs.uv_bounds(per_axis(|axis| position[axis] + n(part_of * NEAR * size) * dir[axis]), part)
         };
         let ([from_u, from_v], [to_u, to_v]) = (at(-1.0)?, at(1.0)?);
-        // What grows beyond 1 begins at 0 again.
+        // A coordinate that grows beyond 1 begins at 0 again.
         let wrapped = |difference: Interval| {
             let turns = (difference + Interval::constant(0.5)).certain_floor()?;
             Some(Interval::<F>::from_f64(difference - Interval::constant(turns)))
@@ -36,7 +36,7 @@ pub(super) fn tangents<F: Endpoint>(
     };
     let (right, above) = (slopes(across)?, slopes(up)?);
     let [u, v] = [0, 1].map(|of| per_axis(|axis| right[of] * across[axis] + above[of] * up[axis]));
-    // Along one of them, the other does not change.
+    // Along one direction, the other coordinate does not change.
     let turned = |along: [Interval<F>; 3], grows: [Interval<F>; 3]| {
         let (toward, length) = (dot(along, grows), dot(along, along).sqrt());
         let sign = match (toward.low > F::of(0.0), toward.high < F::of(0.0)) {

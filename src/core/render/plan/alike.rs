@@ -6,7 +6,7 @@ use crate::world::material::Rgb;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The number of looks that are told apart, so that a scene in which each object has its own takes little memory.
+/// The maximum number of looks that are told apart. It saves memory in scenes in which each object has its own look.
 const MOST: usize = 256;
 
 /// What objects look like: their material and their shader, by where these are in memory.
@@ -43,7 +43,7 @@ impl Alike {
         any.then_some(Self { first })
     }
 
-    /// Returns the first object that looks like one, both given by their indices plus 1; 0 stands for none.
+    /// Returns the first object that looks like the given one, as indices plus 1; 0 stands for none.
     #[inline]
     pub fn look(&self, id: u64) -> u64 {
         match (id as usize).checked_sub(1) {

@@ -1,8 +1,7 @@
-//! Lights that a closed object keeps from everything that is seen, because either the viewer or the light is inside of
-//! it.
+//! Lights that a closed object hides from all visible points, because either the viewer or the light is inside of it.
 //!
-//! Each path from such a light to the viewer crosses the object, which is opaque. Shadow rays find that out one by one,
-//! except for those that start at an edge: there they leave all faces, and pass to the other side.
+//! Each path from such a light to the viewer crosses the object, which is opaque. Shadow rays find that out one by
+//! one, except those that start at an edge: they leave all faces there, and pass to the other side.
 
 use super::depth::clearance;
 use crate::geometry::aabb::Aabb;
@@ -23,7 +22,7 @@ pub(super) struct Objects<'p> {
 }
 
 impl Objects<'_> {
-    /// Returns the indices of the objects that may hold a point.
+    /// Returns the indices of the objects that may contain a point.
     fn around(&self, at: DVec3) -> Vec<usize> {
         let is_around = |(_, bounds): &&(usize, Aabb)| bounds.overlaps(&Aabb { low: at, high: at });
         let bounded = self.bounded.iter().filter(is_around).map(|(index, _)| *index);
@@ -38,13 +37,13 @@ impl Objects<'_> {
     }
 }
 
-/// A light that is kept from all that is seen, and the object that does it, by their indices.
+/// The indices of a hidden light and of the object that hides it.
 pub(crate) struct ShutOut {
     pub light: usize,
     pub object: usize,
 }
 
-/// Returns the lights that are kept from all that is seen.
+/// Returns the lights that are hidden from all visible points.
 pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<ShutOut> {
     if model.lights.is_empty() || model.camera.value.accuracy == Accuracy::Classic {
         return Vec::new();

@@ -6,8 +6,8 @@
 //! rendered. A pixel that ends with N samples has the colour that it has in an image of N samples per pixel.
 //!
 //! Probes add nothing to colours. They go through points that no sample goes through: a straight edge that crosses a
-//! pixel separates its corners, and a shadow edge that crosses a light separates points of the light's rim, to each of
-//! which the rays of some probe go.
+//! pixel separates its corners, and a shadow edge that crosses a light separates points of the light's rim, to which
+//! the probes' rays go.
 //!
 //! [`Sensor::samples`]: crate::world::sensor::Sensor::samples
 
@@ -28,18 +28,18 @@ use std::ops::Range;
 /// The error of a pixel as a multiple of its estimate, if the error is limited.
 const CONFIDENCE: f64 = 2.0;
 
-/// The factor of the standard error of a pixel's mean, if its error is limited, for each of [`CONFIDENCE`]: few blocks
-/// of samples tell little about rare ones.
+/// The factor of the standard error of a pixel's mean, if its error is limited, per unit of [`CONFIDENCE`]: few
+/// blocks of samples tell little about rare colours.
 const DOUBT: f64 = 1.5;
 
-/// The estimated error, where 1 is white, up to which one sample would be enough where no error is limited. It grows with
-/// the root of the number of samples: so the samples go where each lowers the mean square error of the image most.
+/// If no error is limited, the estimated error, where 1 is white, up to which one sample is enough. It grows with the
+/// square root of the number of samples: so samples go where each lowers the mean square error of the image most.
 const BALANCED: f64 = 0.25 / 255.0;
 
 /// The least number of samples of a pixel that an edge crosses, even if all its samples and probes have one colour.
 const CROSSED_SAMPLES: u32 = 16;
 
-/// The number of corners of a pixel and of those around it, along each axis.
+/// The number of corners of a pixel and of the eight around it, along each axis.
 const AROUND: usize = 4;
 
 /// Returns the number of the point on the rim of lights to which the probe at a corner goes: one of 16, all of which
@@ -131,7 +131,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 }
 
-/// A buffer of samples until there is a packet of them.
+/// A buffer that collects samples until they fill a packet.
 struct Rays<'r, 'm, 'w, W> {
     tracer: &'r mut Tracer<'m, 'w, W>,
     group: &'r mut RayGroup,
@@ -154,7 +154,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
     ) {
         let [left, low] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).min().unwrap_or(0));
         let [right, high] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).max().unwrap_or(0));
-        // Corners are counted from one below and to the left of the image: nothing else shows what lies there.
+        // Corners are counted from one pixel below and to the left of the image, where only probes look.
         let wide = right - left + AROUND;
         let place = |[x, y]: [usize; 2]| (y - low) * wide + x - left;
         grid.clear();

@@ -12,7 +12,7 @@ pub(super) const NARROW: usize = 8;
 #[inline(always)]
 pub(super) fn resized<T: Copy + Default>(array: &mut Vec<T>, count: usize) -> &mut [T] {
     if array.len() < count {
-        // All but narrow packets have room for the widest one, which `gather` makes use of.
+        // All but narrow packets have room for the widest one, on which `gather` relies.
         array.resize(if count > NARROW { count.max(PACKET_SIZE) } else { count }, T::default());
     }
     &mut array[..count]

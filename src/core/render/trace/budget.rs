@@ -1,5 +1,5 @@
-//! Ray budgets: what searches cost beyond plain rays, bounds on the light that is missing where a budget is used up, and
-//! what is missing beyond the longest path.
+//! Ray budgets: the costs of searches beyond plain rays, and bounds on the light that is missing where a budget is
+//! used up or a path is too long.
 
 use super::arrays::resized;
 use super::context::Tracer;
@@ -16,7 +16,7 @@ use crate::world::material::Rgb;
 use crate::world::rules;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Starts primary rays with these ray budgets, which lack nothing yet.
+    /// Starts primary rays with these ray budgets. They lack no light yet.
     pub(super) fn begin_missing(&mut self, budgets: &[u32]) {
         resized(&mut self.scratch.missing, budgets.len());
         if self.plan.depth.is_some() {
@@ -42,7 +42,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if self.scratch.any_missing { self.scratch.missing[camera] } else { 0.0 }
     }
 
-    /// Adds the light that rays could have returned that are not traced because their budget is used up.
+    /// Adds the light of rays that are not traced because their budget is used up.
     #[cold]
     pub(super) fn miss_beyond(&mut self, group: &RayGroup, hits: &HitRecord) {
         let Some(depth) = &self.plan.depth else { return };
@@ -74,7 +74,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.any_missing = true;
     }
 
-    /// Notes the primary rays of paths that end at a surface because they are too long under the notes' rules, and not
+    /// Notes the primary rays with paths that end at a surface because they are too long under the notes' rules, not
     /// because they could add too little.
     pub(super) fn end_far(
         &mut self,
@@ -100,7 +100,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Counts the primary rays of which a path was too long.
+    /// Counts the primary rays with a path that was too long.
     pub(super) fn count_far(&mut self) {
         if !self.scratch.far.is_empty() {
             let count = self.scratch.far.iter().filter(|is_far| **is_far).count();
@@ -109,7 +109,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Adds an amount of light at the end of a ray, weighted by its path, to what its primary ray lacks.
+    /// Adds an amount of light at the end of a ray, weighted by its path, to the light that its primary ray lacks.
     fn miss(&mut self, group: &RayGroup, lane: usize, light: f64) {
         if !self.scratch.any_missing {
             self.scratch.missing.fill(0.0);
@@ -122,16 +122,16 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 }
 
-/// After this number of rays of a pixel, searches are charged if a scene has one costly shape; charging them repeats
-/// them in order to count their steps. Several shapes share this number, since a ray may be searched for in all of
+/// The number of rays of a pixel whose searches are not charged if a scene has one costly shape: charging repeats a
+/// search in order to count its steps. Several shapes share this number, since a ray may be searched for in all of
 /// them.
 const UNCOUNTED: u32 = 16;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Charges some of a packet's rays for the searches in shapes where these may take as long as many plain rays.
+    /// Charges some of a packet's rays for their searches in costly shapes.
     ///
-    /// All such shapes of the scene count, those too that lie behind a ray's hit or are not needed for the image, so
-    /// that the charge depends on the ray alone.
+    /// All costly shapes of the scene count, even those that lie behind a ray's hit or are not needed for the image:
+    /// so the charge depends on the ray alone.
     pub(super) fn charge_searches(
         &mut self,
         rays: RayPacket,

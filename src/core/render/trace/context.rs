@@ -81,12 +81,12 @@ pub struct Scratch {
     pub(super) lens: [Vec<f64>; 2],
     /// The samples of the current primary rays, where pixels have more than one.
     pub(super) samples: Samples,
-    /// Whether the current primary rays are probes, whose rays go to the rims of lights and come through the rim of
-    /// the lens: the point whose number is the pixel of their sample.
+    /// Whether the current primary rays are probes. Their rays go through the rim of the lens and to the rims of
+    /// lights, at the rim point whose number is the pixel of their sample.
     pub(super) are_probes: bool,
-    /// What the current primary rays meet on their paths.
+    /// The hashes of the current primary rays' paths.
     pub(super) trails: PathHashes,
-    /// The trees that grow under the free rules, unless they are being looked at.
+    /// The trees that grow under the free rules, unless they are in use.
     pub(super) trees: Option<Box<TreeScratch>>,
     /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
@@ -94,7 +94,7 @@ pub struct Scratch {
     /// The unused scratch space of shadow rays through glass, one for each pane on their way.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) transmittances: Vec<Box<Transmittance>>,
-    /// For direct light, which is finished before any rays continue.
+    /// The scratch space of direct light, which is finished before any rays continue.
     pub(super) lighting: Option<Box<LightScratch>>,
     /// Not 0 for shadow rays whose occlusion is in doubt.
     pub(super) doubt: Vec<u64>,
@@ -102,7 +102,7 @@ pub struct Scratch {
     pub(super) parts: Vec<u32>,
     /// The stack for the traversal of the BVH.
     pub(super) stack: Stack,
-    /// The distances at which rays end that the BVH is searched for, in world units; 0 for shadow rays that are blocked.
+    /// The distances at which rays end in the search of the BVH, in world units; 0 for blocked shadow rays.
     pub(super) ends: Vec<f64>,
     /// For each current primary ray, a bound on the light that it lacks because its ray budget is used up. Valid only
     /// if `any_missing` is set.
@@ -111,13 +111,13 @@ pub struct Scratch {
     pub(super) kept: Vec<u32>,
     /// Whether any primary ray may lack light.
     pub(super) any_missing: bool,
-    /// Whether a path of each primary ray was too long under the notes' rules; empty while none was.
+    /// For each primary ray, whether a path was too long under the notes' rules; empty while none was.
     pub(super) far: Vec<bool>,
     /// The primary rays whose first hit could not be decided.
     pub(super) undecided: UndecidedScratch,
 }
 
-/// What is undecided. Nearly always there is nothing.
+/// Undecided hits. Nearly always there are none.
 #[derive(Default)]
 pub(super) struct UndecidedScratch {
     /// The primary rays of the current packet.
@@ -130,8 +130,7 @@ pub(super) struct UndecidedRay {
     pub lane: usize,
     /// The object's index.
     pub object: usize,
-    /// The least distance at which the ray may hit it, in lengths of the direction of the ray before anything is
-    /// rounded.
+    /// The least distance at which the ray may hit it, in lengths of the unrounded ray's direction.
     pub from: f256,
 }
 
@@ -195,7 +194,7 @@ pub(super) struct ShadingScratch {
     pub behind: VectorList,
 }
 
-/// The scratch space of one light after the other.
+/// The scratch space of lights, used for one after the other.
 #[derive(Default)]
 pub(super) struct LightScratch {
     /// The diffuse reflectivities at the shading points.

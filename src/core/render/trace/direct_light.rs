@@ -40,7 +40,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         };
         let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
         let ray_budget = group.ray_budget[0];
-        // Where nothing is scattered, lights make no difference, but an observer is told of them all the same.
+        // Where nothing is scattered, lights make no difference, but they are still reported to an observer.
         if scatters || W::SEES {
             let around = aabb::around(cpu, points);
             for index in &self.plan.needs.lights {
@@ -150,8 +150,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Samples a light from the points of a surface, into the scratch space. Returns which of them are lit, and a box around
-    /// the ends of the shadow rays.
+    /// Samples a light from the points of a surface, into the scratch space. Returns which of them are lit, and a box
+    /// around the ends of the shadow rays.
     fn sample_light(
         &self,
         index: usize,
@@ -211,8 +211,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.plan.camera.rules == Rules::Free && light.fading.falloff != Falloff::None
     }
 
-    /// Samples the point of a light that each point of a surface sees: where the primary ray's sample chooses, or by the
-    /// middle of the numbers where pixels have one sample. Sets `source` to a box around the ends of the shadow rays.
+    /// Samples a point of a light for each point of a surface: the one that the primary ray's sample chooses, or the
+    /// one of the middle numbers where pixels have one sample. Sets `source` to a box around the ends of the shadow
+    /// rays.
     pub(super) fn sample_emitter(
         &self,
         (emitter, index): (&dyn Emitter, usize),
@@ -252,7 +253,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
 /// Returns the end of a ray, which may be infinitely far away.
 fn end(from: DVec3, dir: DVec3, distance: f64) -> DVec3 {
-    // 0 times infinity is no number.
+    // 0 times infinity is NaN.
     let along = |axis: usize| if dir[axis] == 0.0 { 0.0 } else { distance * dir[axis] };
     from + DVec3::new(along(0), along(1), along(2))
 }

@@ -1,7 +1,7 @@
 //! The numbers by which the samples of primary rays choose the points of lights that surfaces see.
 //!
-//! All rays that descend from a primary ray use the same numbers, so these are computed once for each light and each packet
-//! of primary rays.
+//! All rays that descend from a primary ray use the same numbers, so these are computed once for each light and each
+//! packet of primary rays.
 
 use super::arrays::{VectorList, resized};
 use crate::geometry::ray_packet::PACKET_SIZE;
@@ -12,14 +12,14 @@ use crate::world::sample::{self, Samples};
 /// The number of points on the rim of a light, or of a lens, that probes go through.
 pub(super) const RIM_POINTS: f64 = 16.0;
 
-/// The number of lights whose numbers are kept, so that many lights take little memory.
+/// The maximum number of lights whose numbers are kept, so many lights take little memory.
 const KEPT: usize = 16;
 
-/// The part of the primary rays, 1 in this many, from which on numbers are drawn for all of them.
+/// If at least 1 in this many primary rays needs a light's numbers, they are drawn for all primary rays.
 const WORTH: usize = 4;
 
-/// Numbers for each ray: two from 0 to 1 for an area of light; for a ball of light, a distance from the middle of the unit
-/// disc, and the cosine and the sine of an angle.
+/// Numbers for each ray: two from 0 to 1 for an area of light; for a ball of light, a distance from the middle of the
+/// unit disc, and the cosine and the sine of an angle.
 pub(super) type Numbers<'n> = [&'n mut [f64]; 3];
 
 /// The numbers of a packet of primary rays, and those of the rays that are being shaded.
@@ -27,7 +27,7 @@ pub(super) type Numbers<'n> = [&'n mut [f64]; 3];
 pub(super) struct LightDraws {
     /// The index of a light, and the numbers of all primary rays for it.
     kept: Vec<(usize, Box<[[f64; PACKET_SIZE]; 3]>)>,
-    /// The number of those that hold for the current primary rays.
+    /// The number of kept lights that hold for the current primary rays.
     used: usize,
     /// The samples of few rays.
     few: Samples,
@@ -36,7 +36,7 @@ pub(super) struct LightDraws {
     pub lights: VectorList,
 }
 
-/// A light that primary rays choose points of.
+/// A light whose points the samples choose.
 #[derive(Clone, Copy)]
 pub(super) struct DrawnLight {
     pub index: usize,

@@ -9,9 +9,9 @@ use std::ops::Range;
 /// The number of blocks of samples whose means are compared.
 const BLOCKS: usize = 8;
 
-/// The number of blocks where light is spread out and a pixel's error is limited. If means are normal, 8 of them are off by
-/// three standard errors of their own once in 50 times, and 32 once in 185; and each doubling of the samples is another chance
-/// to end by luck.
+/// The number of blocks if lights are extended and a pixel's error is limited. If block means are normally
+/// distributed, the mean of 8 is off by three of its estimated standard errors once in 50 times, and the mean of 32
+/// once in 185. Each doubling of the samples is another chance to end by luck.
 const MANY_BLOCKS: usize = 32;
 
 /// The least fraction of an estimated error that is left when the number of samples doubles, where [`MANY_BLOCKS`] are
@@ -25,7 +25,7 @@ const UNSEEN: f64 = 0.25;
 const UNSEEN_WITHIN: f64 = 0.06;
 
 /// The number of estimated errors by which a colour beyond white or black may be off. A colour that is farther beyond
-/// cannot turn out to be one that can be shown.
+/// is not taken for one that can be shown.
 const FAR: f64 = 4.0;
 
 /// The scratch space of pixels that take more samples where that is needed.
@@ -64,7 +64,7 @@ pub(super) struct SampleRun {
     pub ray_budget: Option<u32>,
 }
 
-/// The results of rays, one after the other.
+/// The results of single rays.
 pub(super) struct RayResults<'f> {
     pub colours: View<'f>,
     /// A mark of the path of each ray, and the distance of its first hit in world units; empty where that is not
@@ -145,7 +145,7 @@ pub(super) struct Estimate {
     blocks: [Rgb; MANY_BLOCKS],
     /// [`BLOCKS`] or [`MANY_BLOCKS`].
     most_blocks: usize,
-    /// What the estimated error is at least.
+    /// The lower limit of the estimated error.
     least_error: f64,
     /// The sum of the bounds on the light that the samples lack.
     pub missing: f64,
@@ -154,8 +154,9 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// Starts with the results of the probes around the pixel, and with its first number of samples. `is_careful` tells
-    /// that light is spread out and the error is limited. The estimate is too large to be copied into its place.
+    /// Starts with the results of the probes around the pixel, and with its first number of samples. `is_careful`
+    /// tells that lights are extended and the error is limited. An estimate is too large to be made elsewhere and
+    /// copied.
     #[inline]
     pub fn begin(&mut self, summary: RaySummary, goal: u32, is_careful: bool) {
         (self.count, self.goal) = (0, goal);
@@ -191,7 +192,7 @@ impl Estimate {
     /// Sets the next number of samples of the pixel, which is no less than before.
     #[inline]
     pub fn set_goal(&mut self, goal: u32) {
-        // Pairs of blocks are joined, so that there is room for as many samples again.
+        // Pairs of blocks are joined, which makes room for as many samples again.
         for _ in self.shift(self.goal)..self.shift(goal) {
             let pairs = self.most_blocks / 2;
             for pair in 0..pairs {
@@ -252,8 +253,8 @@ impl Estimate {
         off(1.0).max(off(FAR))
     }
 
-    /// Estimates the error after the samples have doubled: where light is spread out and the error is limited, no less than
-    /// [`LEFT`] of what it was before.
+    /// Estimates the error after the samples have doubled: if lights are extended and the error is limited, at least
+    /// [`LEFT`] of the last estimate.
     #[inline]
     pub fn next_error(&mut self, display: &Display, doubt: f64) -> f64 {
         let error = self.error(display, doubt).max(self.least_error);

@@ -1,5 +1,5 @@
-//! Decides what one ray hits where rounding leaves the hits of a packet in doubt: whether it hits a shape, which of two
-//! shapes it hits first, and where 237 bits do not tell.
+//! Decisions about single rays where rounding leaves the hits of a packet in doubt: whether a ray hits a shape, which
+//! of two shapes it hits first, and which hits 237 bits leave undecided.
 
 use super::context::{Tracer, UndecidedPixel, UndecidedRay};
 use super::ray_group::{HitRecord, RayGroup};
@@ -20,7 +20,7 @@ pub(super) struct RoundedRay {
     pub ray: Ray,
     /// A bound on the error of the origin, in world units.
     pub error: f64,
-    /// The ray before anything is rounded, if it is a primary ray.
+    /// The unrounded ray, if it is a primary ray.
     pub sight: Option<Sight>,
 }
 
@@ -38,15 +38,15 @@ impl RoundedRay {
 pub(super) struct Located {
     /// The exact distance, in world units, or [`MISS`].
     pub distance: f64,
-    /// A bracket of that distance and of the distance along the ray before anything is rounded.
+    /// A bracket of that distance and of the distance along the unrounded ray.
     pub bracket: Bracket,
-    /// Where 237 bits do not decide whether the ray hits the shape, the distance from which on it may, as a multiple of the
-    /// length of the ray's direction before anything is rounded.
+    /// If 237 bits do not decide whether the ray hits the shape: the least distance of a possible hit, as a multiple
+    /// of the length of the unrounded ray's direction.
     pub open: Option<f256>,
 }
 
 impl Located {
-    /// A hit at a known distance.
+    /// Returns a hit at a known distance.
     fn known(distance: f64) -> Self {
         Self { distance, bracket: Bracket::exactly(distance), open: None }
     }
@@ -55,8 +55,8 @@ impl Located {
     const MISS: Self = Self { distance: MISS, bracket: Bracket::MISS, open: None };
 }
 
-/// Returns the distance, in world units, of a primary ray's hit of a shape as the tracer finds it where a packet leaves it
-/// in doubt, or [`MISS`]. `ray` is the rounded ray, and `sight` the one before anything is rounded.
+/// Returns the distance, in world units, of a primary ray's hit of a shape, as the tracer decides it if a packet
+/// leaves it in doubt, or [`MISS`]. `ray` is the rounded ray, and `sight` the unrounded one.
 pub fn primary_distance(shape: &AnyShape, ray: Ray, sight: &Sight) -> f64 {
     exact(shape, &RoundedRay { ray, error: 0.0, sight: Some(sight.clone()) }, None, MISS)
 }
@@ -94,8 +94,8 @@ pub(super) fn located(shape: &AnyShape, start: &RoundedRay, origin_side: Option<
 /// An enclosure of a distance wider than this fraction of the distance is too wide to be that of a point.
 const WIDE: f64 = 64.0 * f64::EPSILON;
 
-/// Returns a hit with this distance, if the ray before anything is rounded hits the shape as far as a proof with 237 bits
-/// tells, and none otherwise.
+/// Returns a hit at this distance if the unrounded ray hits the shape, as far as a proof with 237 bits tells, and
+/// none otherwise.
 fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> Located {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
@@ -126,12 +126,12 @@ pub(super) fn in_world_units(distance: f256, sight: &Sight) -> f64 {
     certify::in_world_units(Wide::point(distance), sight).high
 }
 
-/// A bound on the error of the distance of a copy's hit by the rounding of the copy's matrix, as a fraction of the
-/// coordinates, at a right angle: 512 units of 2^-53.
+/// A bound on the error that the rounding of a copy's matrix causes in the distance of a hit at a right angle, as a
+/// fraction of the coordinates: 512 units of 2^-53.
 const COPIED: f64 = 256.0 * f64::EPSILON;
 
-/// Tells whether a ray hits one shape before another, given their approximate distances in world units. Returns `None`
-/// where they coincide as far as the ray is known, whose origin may be off by `origin_error` world units.
+/// Tells whether a ray hits one shape before another, given their approximate distances in world units. Returns
+/// `None` where the ray is not known well enough to tell. Its origin may be off by `origin_error` world units.
 ///
 /// Where two surfaces cross, a ray that is shifted sideways hits them in the other order. How far the ray may be
 /// shifted follows from the rounding of its direction, two ulps in each component, and from the error of its origin.
@@ -159,7 +159,7 @@ pub(super) fn is_before(
     (apart > lost + COPIED * size / cosine).then_some(distance < far)
 }
 
-/// How two surfaces come apart near the point where a ray hits them.
+/// How fast two surfaces diverge near the point where a ray hits them.
 struct Divergence {
     /// The change of the difference between their distances for each unit by which the ray is shifted sideways.
     per_shift: f64,
@@ -180,8 +180,8 @@ fn shift(distance: f64) -> f64 {
     4.0 * f64::EPSILON * distance
 }
 
-/// Tells whether two distances may be equal up to rounding, and have no more digits that decide: one of them is a copy's, or
-/// the ray grazes a surface so that its own rounding moves the hit by more than that.
+/// Tells whether two distances may be equal up to rounding, with no further digits to decide: one of them is a
+/// copy's, or the ray grazes a surface, and its own rounding moves the hit by more than their difference.
 pub(super) fn is_unclear(
     ray: &Ray,
     (one, distance): (&AnyShape, f64),
@@ -195,8 +195,8 @@ pub(super) fn is_unclear(
     !(has_digits(one, distance) && has_digits(other, far))
 }
 
-/// Returns the order in which a ray hits two shapes, by a proof with 237 bits, up to which equal distances are the same;
-/// `None` where that decides nothing.
+/// Returns the order in which a ray hits two shapes, by a proof with 237 bits: distances that these do not tell apart
+/// are equal. `None` where the proof decides nothing.
 pub(super) fn certain_order(one: &AnyShape, other: &AnyShape, sight: &Sight) -> Option<Ordering> {
     let distance = |shape: &AnyShape| match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at),
@@ -211,8 +211,8 @@ pub(super) fn certain_order(one: &AnyShape, other: &AnyShape, sight: &Sight) -> 
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Notes the pixels of a packet whose undecided hits lie no farther than what their rays hit for certain. For a
-    /// shape without an equation, nothing is decided, and its own distance counts.
+    /// Notes the pixels of a packet with undecided hits no farther than their rays' certain hits. For a shape without
+    /// an equation, nothing is decided, and its own distance counts.
     #[cold]
     pub(super) fn note_undecided(&mut self, group: &RayGroup, hits: &HitRecord) {
         let rays = take(&mut self.scratch.undecided.rays);

@@ -1,9 +1,9 @@
-//! The facets of rough surfaces: for each ray, the normal of one that it hits.
+//! The facets of rough surfaces: for each ray, the normal of the facet that it hits.
 //!
-//! Facets are drawn by how much of them a ray sees, from the distribution of Trowbridge and Reitz, which is also known as GGX
-//! (Heitz, "Sampling the GGX Distribution of Visible Normals", 2018). All that a facet reflects or transmits counts: light
-//! that other facets would catch is not lost, as if these passed it on, so that rough surfaces keep all light that smooth
-//! ones keep, and the bounds of what those return hold for them.
+//! Facets are drawn in proportion to their visible area, from the distribution of Trowbridge and Reitz, also known as
+//! GGX (Heitz, "Sampling the GGX Distribution of Visible Normals", 2018). All light that a facet reflects or
+//! transmits counts, even light that other facets would catch. So rough surfaces keep all light that smooth ones
+//! keep, and the same bounds hold for them.
 
 use super::context::Tracer;
 use super::draws::RIM_POINTS;
@@ -13,12 +13,12 @@ use crate::render::observer::TraceObserver;
 use crate::world::sample::on_disc;
 use glam::{DVec2, DVec3};
 
-/// Where probes see facets: at a distance from the middle beyond which the remaining facets cover the same area.
+/// The number that chooses the facets of probes: half of the disc of facets lies nearer to the middle.
 const PROBED: f64 = 0.5;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Bends the normals at points of a surface to those of facets, which the samples of the primary rays draw. Where pixels
-    /// have one sample, the surface is smooth.
+    /// Bends the normals at points of a surface to those of facets, which the samples of the primary rays draw. Where
+    /// pixels have one sample, the surface is smooth.
     pub(super) fn draw_facets(&mut self, group: &RayGroup, surface: &mut Surface, roughness: f64) {
         if self.scratch.samples.is_empty() {
             return;

@@ -15,10 +15,10 @@ use crate::world::material::Rgb;
 use glam::DVec3;
 use std::mem::take;
 
-/// The number of trees that grow together, so that their open rays take little memory.
+/// The number of trees that grow together: few, so their open rays take little memory.
 const TOGETHER: usize = 64;
 
-/// The least weight of rays whose hits tell the samples of a pixel apart, by what they meet.
+/// The minimum weight of rays whose hits are recorded to tell the samples of a pixel apart.
 const HEAVY: f64 = 1.0 / 16.0;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
@@ -85,7 +85,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut order = take(&mut scratch.order);
         order.clear();
         order.extend(0..scratch.round.len() as u32);
-        // What light rays meet is not recorded, as another sample may have ended before them.
+        // The hits of rays of little weight are not recorded, as another sample's tree may have ended before them.
         let records = self.scratch.trails.is_on;
         let kind = |place: u32| {
             let OpenRay { object, weight, .. } = scratch.round[place as usize];
@@ -134,8 +134,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Opens the rays that continue from where the rays of a packet have hit an object, and leaves in `colours` what the
-    /// points return by themselves.
+    /// Opens the rays that continue from a packet's hits on an object, and leaves the points' own light in `colours`.
     pub(super) fn branch(
         &mut self,
         group: &RayGroup,

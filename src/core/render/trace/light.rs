@@ -81,8 +81,8 @@ kernels! {
         }
     }
 
-    /// Clears `goes` for the rays that can return too little to be seen. `ray_budget` has the number of rays that each
-    /// ray may still cost; `None` where none has cost [`MANY`] yet.
+    /// Clears `goes` for the rays that can return too little to be seen. `ray_budget` has the number of rays that
+    /// each ray may still cost; `None` where no ray has cost [`MANY`] yet.
     pub(super) fn leave_out(
         travelled: &[f64], path_weight: PathWeight, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
     ) {
@@ -157,7 +157,7 @@ kernels! {
 }
 
 /// Computes a power whose exponent has fewer than `BITS` bits, by repeated squaring. The number of steps is fixed, so
-/// that the loop around it is vectorized, unlike one around a general power function.
+/// the loop around it is vectorized, unlike one around a general power function.
 #[inline(always)]
 fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
     let (mut product, mut square) = (1.0, of);

@@ -11,8 +11,8 @@ use crate::world::packets::light::PacketLight;
 use glam::{DVec2, DVec3};
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Returns two numbers from 0 to 1 for each ray of a packet, by which the primary ray's sample chooses a point of an area
-    /// of light; `None` where pixels have one sample.
+    /// Returns two numbers from 0 to 1 for each ray of a packet, by which the primary ray's sample chooses a point of
+    /// an area of light; `None` where pixels have one sample.
     pub(super) fn draw<'d>(
         &self,
         index: usize,
@@ -27,8 +27,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         })
     }
 
-    /// Returns the point of a ball of light that each point of a surface sees: on the disc around its centre that faces the
-    /// point, where the primary ray's sample chooses; `None` where pixels have one sample, and see the centre.
+    /// Returns the point of a ball of light that each point of a surface sees. The primary ray's sample chooses it on
+    /// the disc around the ball's centre that faces the surface point. `None` where pixels have one sample, which
+    /// sees the centre.
     pub(super) fn draw_on_ball<'d>(
         &self,
         light: &dyn PacketLight,
@@ -59,8 +60,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 }
 
 kernels! {
-    /// Writes points of a ball of light: for each point of a surface, that on the disc around the middle, facing it, at a
-    /// distance from the middle, in radii, and an angle.
+    /// Writes a point of a ball of light for each point of a surface. It lies on the disc around the middle that
+    /// faces the surface point, at a distance from the middle, in radii, and an angle.
     fn on_ball(
         middle: DVec3, radius: f64, points: View, distance: &[f64], cos: &[f64], sin: &[f64]
     ) => lights {

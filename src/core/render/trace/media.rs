@@ -1,7 +1,7 @@
-//! Light on its way through media that absorb it.
+//! The absorption of light in media.
 //!
-//! The medium of a path is that of the object that its ray leaves on the inside, or otherwise that of the object that
-//! it hits on the inside. So a viewer may be in glass, and objects may be in it. Between two other objects in glass,
+//! The medium of a path belongs to the object that its ray leaves on the inside, or otherwise to the object that it
+//! hits on the inside. So a viewer may be in glass, and objects may be in it. Between two other objects in glass,
 //! light passes freely.
 
 use super::arrays::VectorList;
@@ -35,8 +35,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Returns the fraction of light that passes along a ray of this length, in world units, given the index of the object
-    /// that it hits, and the side, if it hits any; `None` if all light passes.
+    /// Returns the fraction of light that passes along a ray of this length, in world units; `None` if all light
+    /// passes. `met` is the index of the object that the ray hits, if any, and the side.
     #[inline]
     pub(super) fn passed(
         &self,

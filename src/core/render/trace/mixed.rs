@@ -1,5 +1,5 @@
-//! Rays that hit different objects of one look: they are shaded together, as those of one object are. A scene of many small
-//! objects has a few rays for each.
+//! Rays that hit different objects of one look. They are shaded together, like those of one object: a scene of many
+//! small objects has few rays for each.
 
 use super::arrays::resized;
 use super::closest_hit::clamp_to_brackets;
@@ -14,8 +14,9 @@ use crate::simd::soa::{LANES, Vectors};
 use crate::world::coincidence;
 use std::ops::Range;
 
-/// The mean length of runs of neighbouring lanes that hit one object up to which several objects are shaded together. Runs
-/// are parts of rows of eight pixels; where they are longer, each object by itself takes no longer.
+/// The mean length of runs, which are neighbouring lanes that hit one object, up to which several objects are shaded
+/// together. Runs are parts of rows of eight pixels. If they are longer, shading each object by itself takes no
+/// longer.
 const SHORT: usize = 4;
 
 /// Up to eight rays of a group that hit one object, the last of them repeated.
@@ -76,8 +77,8 @@ pub(super) fn list(hit_ids: &[u64], lanes: &[u8], objects: &mut Vec<u32>) {
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Computes the distances, in world units, at which the rays of a group hit an object each. Each lies between `near` and
-    /// `far`.
+    /// Computes the distances, in world units, at which the rays of a group hit their objects. Each lies between
+    /// `near` and `far`.
     pub(super) fn refine_mixed(
         &self,
         group: &RayGroup,
@@ -106,8 +107,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         distances[group.len..].fill(last);
     }
 
-    /// Computes the points, normals and sides at which the rays of a group hit an object each, and bounds on the errors of
-    /// the points.
+    /// Computes the points, normals and sides at which the rays of a group hit their objects, and bounds on the
+    /// errors of the points.
     pub(super) fn interact_mixed(
         &self,
         group: &RayGroup,

@@ -1,9 +1,9 @@
 //! The colours that rays return: first hits, lights, shadows, mirrors and glass (the notes' `ray_trace`).
 //!
-//! Rays are traced in packets. The first hits of a packet are found for all its rays at once (`closest_hit`). The rays
-//! that hit the same object continue together, as a smaller packet (`shade`), and so do their shadow rays
-//! (`shadow_rays`) and the rays that are transmitted and reflected there. A single ray is a packet of one. A ray's
-//! colour does not depend on the other rays of its packet.
+//! Rays are traced in packets. The first hits of a packet are found for all its rays at once (`closest_hit`). The
+//! rays that hit the same object continue together, as a smaller packet (`shade`), and so do their shadow rays
+//! (`occlusion`, `transmittance`) and the rays that are transmitted and reflected there. A single ray is a packet of
+//! one. A ray's colour does not depend on the other rays of its packet.
 
 mod adaptive;
 mod arrays;
@@ -58,8 +58,8 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
     observe_pixel(plan, x, y, &mut ())
 }
 
-/// Computes the colours that rays through the centres of pixels return, up to [`PACKET_SIZE`] together, of which each may
-/// cost a number of rays. Returns with each colour a bound on what the limit cut off of it.
+/// Computes the colours of rays through the centres of up to [`PACKET_SIZE`] pixels, each with its ray budget.
+/// Returns with each colour a bound on the light that the budget cut off.
 #[doc(hidden)]
 pub fn within_budgets(
     plan: &Plan,
@@ -102,7 +102,7 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
     proof.map_or(colour, |proof| proof.nearest(colour))
 }
 
-/// Proven bounds of a pixel's colour.
+/// A proven bound on the error of a pixel's colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelBound {
     /// A bound on the error of the colour as it is shown, the largest of its channels, where 1 is white.
@@ -121,7 +121,7 @@ pub fn bounded(plan: &Plan, x: usize, y: usize) -> Option<PixelBound> {
     Some(PixelBound { error: proof.error(colour, display), is_certified, footprints: proof.footprints })
 }
 
-/// Returns the number of samples that a pixel takes, and where pixels differ in that, the estimated error of its colour,
+/// Returns the number of samples of a pixel and, where pixels differ in that, the estimated error of its colour,
 /// where 1 is white.
 pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
     if plan.camera.adaptive.is_none() {
@@ -198,7 +198,7 @@ pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
     first_hits(plan, slice::from_ref(sight)).pop().flatten()
 }
 
-/// Finds the first hit of each of some rays, up to [`PACKET_SIZE`] together.
+/// Finds the first hits of primary rays, up to [`PACKET_SIZE`] together.
 pub fn first_hits<'m>(plan: &Plan<'m>, sights: &[Sight]) -> Vec<Option<Hit<'m>>> {
     let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
@@ -249,7 +249,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.primary.insert(primary).colours.view(pixels.len())
     }
 
-    /// Computes the colours that rays through places of the image return, in pixels, each with its sample.
+    /// Computes the colours of rays through places of the image, in pixels, each with its sample.
     pub fn places(&mut self, places: &[(DVec2, Sample)]) -> Vec<Rgb> {
         let mut primary = self.scratch.primary.take().unwrap_or_default();
         let PrimaryScratch { group, seen, .. } = &mut *primary;
@@ -321,7 +321,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Makes the first `len` image positions, with their samples, the current primary rays.
+    /// Fills a group with the primary rays through the first `len` image positions, with their samples.
     fn look(&mut self, group: &mut RayGroup, len: usize) {
         let (cpu, plan) = (self.cpu, self.plan);
         let Scratch { places, lens, samples, are_probes, .. } = &mut *self.scratch;
@@ -338,8 +338,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         group.look(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
     }
 
-    /// Reports a pixel that lacks light. `missing` bounds how much, in any channel; under the free rules, it is how far
-    /// the bounds of the pixel are apart as it is shown.
+    /// Reports a pixel that lacks light. `missing` bounds that light, in any channel; under the free rules, it is the
+    /// distance of the pixel's bounds as shown.
     fn cut(&mut self, missing: f64) {
         let tolerable = match self.plan.camera.rules {
             Rules::Notes => 0.0,

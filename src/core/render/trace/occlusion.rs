@@ -1,4 +1,4 @@
-//! Occlusion: which rays of a packet any object blocks, and from which points of a surface a light is occluded.
+//! Occlusion: which rays of a packet an object blocks, and from which points of a surface a light is occluded.
 
 use super::arrays::{VectorList, gather, resized};
 use super::context::{ShadowScratch, Tracer};
@@ -55,7 +55,7 @@ impl ShadowRays<'_> {
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Marks the rays that any object blocks before their ends. The rays go from points in the box `from` to points in
+    /// Marks the rays that an object blocks before their ends. The rays go from points in the box `from` to points in
     /// the box `to`.
     pub(super) fn occlude(&mut self, shadow_rays: &ShadowRays, from: &Aabb, to: &Aabb, blocked: &mut [u64]) {
         let mut stack = take(&mut self.scratch.stack);
@@ -113,7 +113,7 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
         }
     }
 
-    /// Ends the rays of some lanes that are blocked, so that the BVH is searched for them no more.
+    /// Ends the blocked rays of some lanes: the BVH is searched for them no more.
     fn end_blocked(&self, lanes: Range<usize>, ends: &mut [f64]) {
         for (end, blocked) in ends[lanes.clone()].iter_mut().zip(&self.blocked[lanes]) {
             *end = if *blocked == 0 { *end } else { 0.0 };
@@ -141,7 +141,7 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
             self.test_leaving(index, self.shadow_rays.count(&part), &t_max[part], None);
             return;
         }
-        // Those that leave the object, and the others.
+        // First the rays that do not leave the object, then those that do.
         let mut ends = [0.0; PACKET_SIZE];
         for leaves in [false, true] {
             let shape = &self.tracer.model.objects[index].shape;
@@ -159,8 +159,8 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
         }
     }
 
-    /// Tests the current sub-packet, of which `count` rays are cast, which end at `t_max`, against an object. `left` has the
-    /// sides of it that they leave, if they do.
+    /// Tests the current sub-packet against an object. `count` of its rays are cast, and end at `t_max`. `left` has
+    /// the sides of the object that they leave, if they leave it.
     fn test_leaving(&mut self, index: usize, count: usize, t_max: &[f64], left: Option<&[Side]>) {
         let rays = self.shadow_rays.rays.part(self.part.clone()).leaving(left);
         let shape = &self.tracer.model.objects[index].shape;
@@ -215,15 +215,15 @@ pub(super) struct LightPaths<'w> {
     pub toward: &'w VectorList,
 }
 
-/// The mark in `blocked` of a shadow ray that is not cast, which is not blocked.
+/// The mark in `blocked` of a shadow ray that is not cast. Such a ray is not blocked.
 const NOT_CAST: u64 = 2;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Returns how far short of the light shadow rays end, as a fraction of the sizes at [`ShadingPoints::slack`]: a
+    /// Returns how far before the light shadow rays end, as a fraction of the sizes at [`ShadingPoints::slack`]: a
     /// surface on which the light lies must not block it, however the distances are rounded.
     ///
-    /// The fraction is that of the error of a hit point, [`ROUNDING`]; the test
-    /// `a_light_on_a_wall_lights_the_floor_evenly` holds it.
+    /// The fraction is that of the error of a hit point, [`ROUNDING`]; `a_light_on_a_wall_lights_the_floor_evenly`
+    /// tests it.
     ///
     /// [`ShadingPoints::slack`]: crate::world::packets::light::ShadingPoints::slack
     /// [`ROUNDING`]: crate::world::coincidence::ROUNDING

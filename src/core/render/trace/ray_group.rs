@@ -1,4 +1,4 @@
-//! Groups of rays that are traced together, and what they hit.
+//! Groups of rays that are traced together, and their hits.
 
 use super::arrays::{VectorList, gather, resized};
 use super::light::{self, PathWeight};
@@ -38,13 +38,13 @@ pub(super) struct RayGroup {
     pub travelled: Vec<f64>,
     /// The number of rays that each ray may still cost, itself included.
     pub ray_budget: Vec<u32>,
-    /// The rays before anything is rounded, where these are known and the rays are not the camera's.
+    /// The unrounded rays, where these are known and the rays are not the camera's.
     pub sights: Vec<Sight>,
     /// Whether these are the current primary rays, each through its position in [`Scratch::places`].
     ///
     /// [`Scratch::places`]: super::context::Scratch::places
     pub looks: bool,
-    /// What the rays can add to a pixel; `None` where no ray continues, or where that has no bound.
+    /// The light that the rays can add to a pixel; `None` where no ray continues, or where it has no bound.
     pub path_weight: Option<PathWeight>,
     /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
     /// sample.
@@ -88,8 +88,8 @@ impl RayGroup {
         self.looks = false;
     }
 
-    /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom, and
-    /// through as many points of the lens, in its radius, if there are any.
+    /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom,
+    /// and through as many points of the lens, in its radius, if there are any.
     pub fn look(
         &mut self,
         cpu: Cpu,
@@ -156,7 +156,7 @@ impl RayGroup {
         light::leave_out(cpu, travelled, path_weight, branch, ray_budget, goes);
     }
 
-    /// Updates what the rays can add to a pixel when they continue along a branch of a surface.
+    /// Updates the light that the rays can add to a pixel when they continue along a branch of a surface.
     pub fn branch(&mut self, branch: &Branch) {
         if let Some(PathWeight { weight, share }) = &mut self.path_weight {
             *weight *= branch.weight;
@@ -223,7 +223,7 @@ impl RayGroup {
         }
     }
 
-    /// Becomes the rays of some lanes that continue from where another group's rays have hit an object.
+    /// Becomes the rays that continue from another group's hits on an object, in some lanes.
     pub fn continue_from(&mut self, from: &Self, rays: &SecondaryRays, lanes: &[u8]) {
         self.len = lanes.len();
         self.forget_sights();
@@ -294,7 +294,7 @@ impl RayGroup {
         self.errors = surface.errors;
     }
 
-    /// Takes over the ray budgets that remain of some lanes, which were traced as another group.
+    /// Takes over the remaining ray budgets of some lanes, which were traced as another group.
     pub fn charge(&mut self, part: &Self, lanes: &[u8]) {
         for (lane, ray_budget) in lanes.iter().zip(&part.ray_budget) {
             self.ray_budget[usize::from(*lane)] = *ray_budget;
@@ -302,7 +302,7 @@ impl RayGroup {
     }
 }
 
-/// The number of runs from which on they are sorted by objects. Few runs are gone through in less time.
+/// The maximum number of runs that are not sorted by objects: going through few runs takes less time.
 const SOME: usize = 48;
 
 /// Groups a packet's rays by the object that they hit.

@@ -7,12 +7,12 @@ use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::Depth;
 use crate::world::material::Rgb;
 
-/// What was found at the hit of a ray.
+/// The results at the hit of a ray.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Outcome {
     /// The light of the point itself, times the weight of the path.
     pub light: Rgb,
-    /// The number of rays that it took.
+    /// The work that it took, in simple rays.
     pub cost: u32,
     /// The rays that continue.
     pub onward: [Option<OpenRay>; 2],
@@ -38,7 +38,8 @@ impl TreeScratch {
         self.outcomes.resize(self.round.len(), Outcome::default());
     }
 
-    /// Fills a packet with rays of the round that leave the same object. Each may cost what its tree may still.
+    /// Fills a packet with rays of the round that leave the same object. Each may cost what is left of its tree's
+    /// work, but at least half of `MAX_RAYS`.
     pub fn gather(&mut self, places: &[u32], first: usize, group: &mut RayGroup) {
         let Self { trees, round, outcomes, .. } = self;
         for place in places {

@@ -1,9 +1,9 @@
 //! Pixels with several samples, where nothing bounds the light that rays may return.
 //!
 //! A pixel is then off by an unknown amount as soon as one of its samples uses up its ray budget, whatever the others
-//! return. So the samples after it get a small part of the budget, and the pixel costs about as much as a pixel with a
-//! single sample; where the number of samples depends on the pixel, it takes only the first number. What a sample may
-//! cost depends on those before it, which are traced first.
+//! return. So the samples after it get a small part of the budget, and the pixel costs about as much as a pixel with
+//! a single sample. Where the number of samples depends on the pixel, it takes only the first number. The budget of a
+//! sample depends on the samples before it, so these are traced first.
 
 use super::context::{PrimaryScratch, Scratch, Tracer};
 use crate::geometry::ray_packet::PACKET_SIZE;
@@ -21,13 +21,13 @@ pub(super) fn is_unbounded(plan: &Plan) -> bool {
     plan.depth.as_ref().is_some_and(|depth| !depth.most.is_finite())
 }
 
-/// The number of pixels that are traced together in measurements where one sample is traced after the other: so few that
-/// many samples do not take too long, and so many that a packet of them takes hardly longer than a part of a larger one.
+/// The number of pixels that measurements trace together where samples are traced one by one: few enough that many
+/// samples do not take too long, and enough that a packet takes hardly longer than a part of a larger one.
 const SINGLY: usize = 64;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Returns how many pixels' rays are traced together: those of a packet, or of tiles where pixels differ in their
-    /// numbers of samples. Where one sample is traced after the other, it is a part of a packet that takes hardly longer.
+    /// Returns the number of pixels whose rays are traced together: those of a packet, those of several tiles where
+    /// pixels differ in their numbers of samples, or `SINGLY` where samples are traced one by one.
     pub fn pixels_together(&self) -> usize {
         let camera = &self.plan.camera;
         match camera.adaptive {

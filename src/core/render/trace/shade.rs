@@ -131,8 +131,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Computes the points at these distances, where the rays of a packet hit an object, how they look, and how far they
-    /// may be off, and sets the colours to their ambient light.
+    /// Computes the points at these distances, where the rays of a packet hit an object, with their looks and errors,
+    /// and sets the colours to their ambient light.
     #[inline]
     fn find_surface(
         &mut self,
@@ -280,8 +280,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Adds transmitted and reflected light, in the fractions that an interface decides.
     ///
-    /// How deep reflected rays are followed depends on the largest fraction, rounded up to a power of two, so that it does not
-    /// depend on the other rays of the packet.
+    /// The largest reflected fraction of a ray, rounded up to a power of two, decides how deep the ray is followed.
+    /// So the other rays of the packet make no difference.
     fn add_split(
         &mut self,
         interface: &dyn Interface,
@@ -400,8 +400,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.depth -= 1;
     }
 
-    /// Does the work of [`trace_secondary`](Self::trace_secondary) if all rays of the group are reflected. The rays are not
-    /// needed here afterwards, so their arrays are swapped, not copied.
+    /// Implements [`trace_secondary`](Self::trace_secondary) where all rays of the group are reflected. The rays are
+    /// not needed here afterwards, so their arrays are swapped, not copied.
     fn trace_all_secondary(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
         let ShadingScratch { surface, dir, secondary, behind, .. } = shading;
         self.observer.count(Count::Rays(RayKind::Reflected, group.len));

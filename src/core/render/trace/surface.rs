@@ -49,7 +49,7 @@ pub(super) struct Surface {
     pub passed: Vec<Rgb>,
 }
 
-/// What the rays of a packet see around the points that they hit, where samples show patches.
+/// The surroundings of hit points, as the rays of a packet see them, where samples show patches.
 #[derive(Clone, Copy)]
 pub(super) struct SeenPatches<'p> {
     /// The directions of the rays.
@@ -102,15 +102,15 @@ impl Surface {
         }
     }
 
-    /// Returns the normal of the surface itself at a point that is shaded with another one.
+    /// Returns the normal of the surface itself at a point that is shaded with another normal.
     #[inline(always)]
     pub fn bent_from(&self, lane: usize) -> Option<DVec3> {
         let unbent = self.unbent.get(lane);
         (self.is_bent && unbent != self.normals.get(lane)).then_some(unbent)
     }
 
-    /// Clears `shines` where a light shines on the surface from behind: there it may shine on the bent normals only.
-    /// Such points need no shadow ray: `t_max` becomes 0. Returns whether it still shines on any.
+    /// Clears `shines` where a light shines on the surface from behind: there it may shine only on the bent normals.
+    /// Such points need no shadow ray: `t_max` becomes 0. Returns whether the light still shines on any point.
     pub fn hide_from_behind(&self, toward: View, shines: &mut [u64], t_max: &mut [f64]) -> bool {
         let mut any = false;
         for lane in 0..shines.len() {
@@ -134,7 +134,7 @@ impl Surface {
         }
     }
 
-    /// Turns mirrored directions back that bent normals mirror through the surface.
+    /// Turns back the directions that bent normals mirror through the surface.
     pub fn keep_before(&self, seen: View, mirrored: &mut VectorList) {
         for lane in 0..seen.len() {
             let Some(normal) = self.bent_from(lane) else { continue };
@@ -147,7 +147,7 @@ impl Surface {
         }
     }
 
-    /// Turns to the other sides of the points.
+    /// Switches to the other sides of the points.
     pub fn flip_sides(&mut self, count: usize) {
         self.sides[..count].iter_mut().for_each(|side| *side = side.opposite());
     }
@@ -177,7 +177,7 @@ impl Surface {
         SecondaryRays { points, dir, travelled, origin_object: *index, sides, cosines, errors: *errors }
     }
 
-    /// Returns a ray of a tree that may continue from a point after another one.
+    /// Returns an open ray of a tree that continues another ray from a point.
     pub fn open_ray(&self, lane: usize, before: OpenRay) -> OpenRay {
         OpenRay {
             origin: self.points.get(lane),

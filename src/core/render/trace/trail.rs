@@ -1,4 +1,4 @@
-//! What primary rays meet on their paths, so that rays of one pixel can be told apart by it.
+//! Hashes of primary rays' paths, which tell the rays of a pixel apart.
 
 use super::light::{Colours, LitPoints, Reflectivities};
 use crate::simd::cpu::Cpu;
@@ -13,13 +13,13 @@ use std::mem::take;
 pub(super) struct PathHashes {
     /// Whether anything is recorded.
     pub is_on: bool,
-    /// Whether the rays of one path are met in no order.
+    /// Whether the hits on a path come in no fixed order.
     pub is_mixed: bool,
     /// The hashes.
     pub marks: Vec<u64>,
     /// The distances of the first hits in world units, infinite for rays that hit nothing.
     pub distances: Vec<f64>,
-    /// The tiles that some of them meet.
+    /// The tiles at the points of the current packet.
     tiles: Vec<u64>,
 }
 
@@ -57,8 +57,9 @@ impl PathHashes {
         }
     }
 
-    /// Records on which of these points the light of this index shines, for those points that reflect any of it: the
-    /// others may not have been looked at. `has_tints` tells that its colours differ only by the glass on the way.
+    /// Records on which of these points the light of this index shines. Only points that reflect any of it count: the
+    /// others may not have been tested. `has_tints` tells that the light's colours differ only by the glass on the
+    /// way.
     #[inline]
     pub fn see_light(
         &mut self,
@@ -89,7 +90,7 @@ impl PathHashes {
         }
     }
 
-    /// Records which facet of a rough surface a descendant of a primary ray hits: no two are alike.
+    /// Records the facet of a rough surface that a descendant of a primary ray hits. No two facets are alike.
     pub fn see_facet(&mut self, camera: u8, draw: DVec2) {
         self.add(camera, draw.x.to_bits() ^ draw.y.to_bits().rotate_left(32));
     }

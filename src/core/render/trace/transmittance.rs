@@ -10,9 +10,9 @@ use crate::render::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
 use crate::world::material::Rgb;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Multiplies the light that shines on some points by what passes through the glass on the way, in a scene with
-    /// glass, and clears `shines` where an opaque object blocks it. Returns, for the first point, the index of the
-    /// opaque object that blocks the light, if any, and the fraction of each channel that passes.
+    /// Multiplies the light on some points by the fraction that passes through the glass on the way, and clears
+    /// `shines` where an opaque object blocks it. Returns, for the first point, the index of the opaque object that
+    /// blocks the light, if any, and the fraction of each channel that passes.
     pub(super) fn pass(
         &mut self,
         group: &mut RayGroup,

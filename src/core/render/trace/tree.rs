@@ -1,21 +1,21 @@
-//! The trees of rays under the free rules: each is followed heaviest branch first, until what is left of it cannot be
-//! seen.
+//! The trees of rays under the free rules: each is followed heaviest branch first, until its rest cannot be seen.
 //!
-//! A pixel's colour is the sum of what the points that its rays meet send by themselves, each times the weight of its path.
-//! The rays that are yet to be followed are *open*. What they can still add is bounded from below and from above, by their
-//! weights and by what there is to see ([`LightRange`]), and so is the colour. A tree ends when these bounds are less than
-//! [`ENDED`] of a level apart, as the image shows them, or when it has cost as many rays as it may; the middle of the bounds
-//! stands for what is left. If a tree that cost too much is open by more than a level, what was found is shown and the
-//! pixel is counted; of a pixel with several samples, the mean of their middles is shown, and it is counted if its bounds are
-//! more than a level apart.
+//! A pixel's colour is the sum of the light that the points on its rays' paths send by themselves, each times the
+//! weight of its path. The rays that are yet to be followed are *open*. Their weights and the light in the scene
+//! ([`LightRange`]) bound what they can still add, and so the colour. A tree ends when these bounds, as the image
+//! shows them, are less than [`ENDED`] of a level apart, or when it has used up its budget; the middle of the bounds
+//! stands for the rest. If a tree that costs too much is open by more than a level, the light found so far is shown,
+//! and the pixel is counted. A pixel with several samples shows the mean of their middles, and is counted if its
+//! bounds are more than a level apart.
 //!
-//! The trees of a packet of primary rays grow together, in rounds, so that rays are still traced in packets: in each round,
-//! every tree gives its heaviest open ray, and those at least half as heavy. The rules of a tree look at the tree alone,
-//! and what a round has found is added in the order in which its rays were given, so that no colour depends on the packet.
+//! The trees of a packet of primary rays grow together, in rounds, so rays are still traced in packets: in each
+//! round, every tree gives its heaviest open ray, and those at least half as heavy. The rules of a tree look at the
+//! tree alone, and the results of a round are added in the order in which its rays were given, so no colour depends
+//! on the packet.
 //!
-//! The notes' rules have other ends, which the [depth](crate::render::plan::depth) describes: there each branch has an
-//! allowance of its own, fixed by its path, and is followed as soon as it is met, so that the course's pictures stay as they
-//! are.
+//! The notes' rules have other ends, which the [depth](crate::render::plan::depth) describes. There each branch has
+//! an allowance of its own, fixed by its path, and is followed as soon as it is met, so the course's pictures stay as
+//! they are.
 
 use crate::geometry::ray::Side;
 use crate::render::limits::{LEAST_PART, MAX_RAYS, MAX_TREE};
@@ -32,19 +32,20 @@ use std::mem::take;
 /// The distance of the bounds of a colour, in levels of a byte, below which its tree ends.
 const ENDED: f64 = 1.0 / 16.0;
 
-/// The distance of the bounds of a colour, in levels, up to which their middle stands for it where the tree costs too much.
+/// The distance of the bounds of a colour, in levels, up to which their middle stands for it where the tree costs too
+/// much.
 pub(super) const SHOWN: f64 = 1.0;
 
-/// The least slope of what is shown of light below white: the curve of sRGB has 0.44 there, a linear one more.
+/// A lower limit on the slope of the display curve below white: that of sRGB is 0.44 there, a linear one is steeper.
 const FLATTEST: f64 = 0.4;
 
-/// The part of the heaviest open ray's weight down to which others are followed in the same round.
+/// Open rays with at least this part of the heaviest one's weight are followed in the same round.
 const TOGETHER: f64 = 0.5;
 
 /// A ray that is yet to be followed.
 #[derive(Clone, Copy)]
 pub(super) struct OpenRay {
-    /// How far what it can still add is unknown: the largest of the channels.
+    /// The uncertainty of the light that it can still add: the largest of the channels.
     pub width: f64,
     /// The factor of its light.
     pub weight: Rgb,
@@ -68,7 +69,7 @@ pub(super) struct OpenRay {
 }
 
 impl OpenRay {
-    /// Returns what it can add.
+    /// Returns the range of light that it can add.
     fn range(&self, depth: &Depth) -> LightRange {
         let side = usize::from(self.side == Side::Inside);
         let LightRange { low, high } = depth.ranges[self.object as usize][side];
@@ -78,7 +79,7 @@ impl OpenRay {
 }
 
 impl OpenRay {
-    /// A ray from the viewer, which stands for those of the first round: only its lane matters.
+    /// Returns a placeholder for a primary ray of the first round: only its lane matters.
     pub fn primary(camera: usize) -> Self {
         Self {
             width: f64::INFINITY,
@@ -103,7 +104,7 @@ fn times(weight: Rgb, light: Rgb) -> Rgb {
     Rgb::new(gain(0), gain(1), gain(2))
 }
 
-/// Orders by what is unknown, and where nothing bounds that, by weight.
+/// Orders by uncertainty, and rays of the same uncertainty by weight.
 impl Ord for OpenRay {
     fn cmp(&self, other: &Self) -> Ordering {
         let weight = |ray: &Self| ray.weight.abs().max_element();
@@ -128,10 +129,10 @@ impl Eq for OpenRay {}
 /// The tree of one primary ray.
 #[derive(Default)]
 pub(super) struct Tree {
-    /// The sum of what was found.
+    /// The sum of the light found so far.
     pub found: Rgb,
     open: BinaryHeap<OpenRay>,
-    /// What the open rays that are bounded can add, and the rays that are too faint to be kept.
+    /// The range of light that bounded open rays, and rays too faint to be kept, can add.
     left: LightRange,
     /// The number of open rays that nothing bounds.
     unbounded: u32,
@@ -148,7 +149,7 @@ pub(super) struct End {
     pub apart: f64,
 }
 
-/// What a tree may take.
+/// The limits of a tree.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Budget {
     /// The number of rays that may be followed.
@@ -157,14 +158,14 @@ pub(super) struct Budget {
     pub work: u32,
 }
 
-/// What decides where the trees of a camera's rays end.
+/// The conditions under which the trees of a camera's rays end.
 pub(super) struct Ends {
     display: Display,
     /// Whether a pixel is the mean of several samples.
     is_averaged: bool,
-    /// What the tree of one sample may take.
+    /// The limits of the tree of one sample.
     pub budget: Budget,
-    /// What a ray can add at most if it need not be kept: so little that all rays of a tree together make no difference.
+    /// The light up to which a ray is not kept: so little that all such rays of a tree together make no difference.
     faint: f64,
 }
 
@@ -179,8 +180,8 @@ impl Ends {
         }
     }
 
-    /// Returns how far colours are apart, in levels of a byte, as an image shows them: the largest of the channels. Where
-    /// samples are averaged, light above white counts, too: by the least slope of what is shown below it.
+    /// Returns how far colours are apart, in levels of a byte, as an image shows them: the largest of the channels.
+    /// Where samples are averaged, light above white counts, too, with the least slope below white.
     fn levels_apart(&self, [low, high]: [Rgb; 2]) -> f64 {
         let [least, most] = self.display.shown_within([low, high]);
         let above_white =
@@ -188,10 +189,10 @@ impl Ends {
         255.0 * (most - least).max(above_white).max_element()
     }
 
-    /// Tells whether colours are less than [`ENDED`] apart.
+    /// Tells whether the bounds of a colour are less than [`ENDED`] apart.
     fn are_met(&self, [low, high]: [Rgb; 2]) -> bool {
         let gain = self.display.gain();
-        // What is shown takes long to compute, and cannot be near enough unless light is, or is burnt.
+        // The shown colours take long to compute. They cannot be near enough unless the light is, or is clipped.
         let may_be = |channel: usize| {
             let apart = 255.0 * FLATTEST * gain * (high[channel] - low[channel]);
             apart < ENDED || gain * low[channel] >= 1.0
@@ -230,7 +231,7 @@ impl Tree {
             return;
         }
         let Some(heaviest) = self.open.peek().map(|ray| ray.width) else { return };
-        // Where nothing bounds rays, all are as heavy.
+        // Unbounded rays are all equally heavy.
         let most = if heaviest == f64::INFINITY { 1 } else { usize::MAX };
         let first = round.len();
         while round.len() - first < most
@@ -252,7 +253,7 @@ impl Tree {
         let middle = ends.display.middle(bounds);
         match ends.levels_apart(bounds) {
             apart if apart <= SHOWN => End { colour: middle, apart: 0.0 },
-            // Of several samples, others of the pixel may be known better.
+            // The pixel's other samples may be known better.
             apart if ends.is_averaged => End { colour: middle, apart },
             apart => End { colour: self.found, apart },
         }

@@ -8,7 +8,7 @@ pub const FAINT: f64 = 1.0 / (1024.0 * 255.0);
 /// others.
 pub(crate) const MANY: u32 = 4000;
 
-/// Bounds on what can be returned from where rays hit an object.
+/// Bounds on the light from the points where rays hit an object.
 #[derive(Clone, Copy)]
 pub struct ContinuationBounds {
     /// A bound on the light of the object's own surface, times the path length to the surface.
@@ -42,7 +42,7 @@ impl ContinuationBounds {
         Self { own: 0.0, hit: 0.0, beyond: 0.0, through: Branch::NONE, mirrored: Branch::NONE };
 }
 
-/// The number of steps by which reflected fractions are told apart.
+/// The number of steps that reflected fractions are divided into.
 pub(crate) const STEPS: i32 = 16;
 
 /// The fraction of the allowance for cuts that the reflected ray gets where an interface divides a ray in two.

@@ -32,13 +32,12 @@
 //! the reflected branch is the largest `r` of a channel, rounded up to a power of two.
 //!
 //! The background counts as an object around everything, whose own light `S` is its brightest channel times
-//! [`MAX_DIST`]: it is not divided by the path length `d`, but no ray leaves an object
-//! where `d` is more than that.
+//! [`MAX_DIST`]: it is not divided by the path length `d`, but no ray leaves an object where `d` is more than that.
 //!
-//! Any solution of these inequalities is at least the least one, which is at least every sum of finitely many branches.
-//! A solution is searched for by iteration from below, and accepted when it satisfies the inequalities as it stands.
-//! Where mirrors and glass pass on as much light as they receive, there is none: then no branch is cut, and
-//! [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends what the path length does not.
+//! Any solution of these inequalities is at least the least one, which is at least every sum of finitely many
+//! branches. A solution is searched for by iteration from below, and accepted if it satisfies the inequalities as
+//! computed. Where mirrors and glass pass on as much light as they receive, there is no solution. Then no branch is
+//! cut, and [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends the branches that the path length does not.
 //!
 //! **What is cut.** A primary ray may lose [`FAINT`] in all, 1/1024 of a level. This allowance is shared among the
 //! branches. Let `P(i, side)` solve the inequalities with 1 for each `kept_j * S_j`. A ray whose share is `u * P` where
@@ -49,13 +48,12 @@
 //! a branch's weight falls by more than its share does, so each branch ends; and the cuts in a ray's colour add up to
 //! less than [`FAINT`].
 //!
-//! Under the free rules, no light is divided by `d`: the bounds are on light itself, `S` counts a lamp as its falloff
-//! does, and the background's own light is its brightest channel. Branches are not cut there one by one, with
-//! allowances that are fixed beforehand: the tracer ends the tree of a pixel as a whole, by [`LightRange`]s from the
-//! same inequalities.
+//! Under the free rules, no light is divided by `d`: the bounds are on light itself, `S` includes a lamp's falloff,
+//! and the background's own light is its brightest channel. Branches are not cut one by one with fixed allowances:
+//! the tracer ends the tree of a pixel as a whole, by [`LightRange`]s from the same inequalities.
 //!
-//! Where glass and mirrors pass on nearly all that they receive, that takes very many rays. From the `MANY`th ray on,
-//! a branch is also cut where `weight * beyond / d < FAINT` by itself.
+//! Where glass and mirrors pass on nearly all light that they receive, the cuts leave very many rays. From the
+//! `MANY`th ray on, a branch is also cut where `weight * beyond / d < FAINT` by itself.
 
 mod branch;
 mod range;
@@ -77,7 +75,7 @@ use crate::world::rules::Rules;
 use solve::VisibleSurfaces;
 use surface::{BoundedLight, SurfaceLight};
 
-/// Bounds on what the branches of a scene with mirrors or glass can return.
+/// Bounds on the light of branches in a scene with mirrors or glass.
 pub struct Depth {
     /// A bound on any channel of the light that a primary ray returns if it hits an object, times the path length;
     /// infinite where there is no bound.
@@ -112,8 +110,8 @@ impl Depth {
         Self { most, objects, ranges }
     }
 
-    /// Returns a bound on what rays that leave the object of this index return, times the path length; for `None`, of
-    /// what primary rays return.
+    /// Returns a bound on the light of rays that leave the object of this index, times the path length; for `None`,
+    /// on that of primary rays.
     pub fn beyond(&self, leaves: Option<usize>) -> f64 {
         leaves.map_or(self.most, |index| self.objects[index].beyond)
     }
@@ -133,7 +131,7 @@ impl Depth {
     }
 }
 
-/// Bounds what rays that leave an object return which hit nothing; under the notes' rules, times the path length.
+/// Bounds the light of rays that leave an object and hit nothing; under the notes' rules, times the path length.
 fn background(model: &Model) -> f64 {
     let brightest = model.background.as_ref().map(|background| background.value.brightest());
     let longest = match model.camera.value.rules {

@@ -1,14 +1,14 @@
-//! What rays that leave objects can return under the free rules, from below and from above.
+//! Lower and upper bounds on the light of rays that leave objects, under the free rules.
 //!
 //! A range `[low, high]` of light holds for all rays that leave surfaces under two conditions: every surface that
 //! receives light in the range returns light in the range, and the background lies in it. Then each sum of branches
 //! whose ends are filled with light in the range lies in it too, however deep. So in a furnace, where everything is as
 //! bright as the background, no ray need be followed at all.
 //!
-//! The upper bounds solve the inequalities of the [depth](super), for each channel. The lower one is the same for all
-//! surfaces: the darkest background, or less, so that `left * (ambient + passed * low) >= low` for each surface, where
-//! `passed` is the least fraction that a surface passes on, and `left` the least fraction of light that is left on any
-//! path through a medium. This bound does not count on lamps, which may be in shadow everywhere.
+//! The upper bounds solve the inequalities of the [depth](super), for each channel. The lower bound is the same for
+//! all surfaces: the darkest background, or less, if `left * (ambient + passed * low) >= low` would not hold for each
+//! surface. Here `passed` is the least fraction that a surface passes on, and `left` the least fraction of light that
+//! is left on any path through a medium. This bound does not rely on lamps, which may be in shadow everywhere.
 
 use super::sides::{SIDES, Sides};
 use super::solve::VisibleSurfaces;
@@ -24,7 +24,7 @@ use glam::DVec3;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::per_axis;
 
-/// Coordinates beyond which no scene reaches whose numbers can be multiplied.
+/// A limit of coordinates: with larger ones, the products of a scene's numbers overflow.
 const FAR: f64 = 1e60;
 
 /// Bounds of light, per channel.
@@ -36,7 +36,7 @@ pub struct LightRange {
     pub high: Rgb,
 }
 
-/// Bounds what rays that leave each object of a model return, on each of its sides, given the objects' brightest looks.
+/// Bounds the light of rays that leave each side of a model's objects, given the objects' brightest looks.
 pub(super) fn ranges(model: &Model, looks: &[Option<Look>]) -> Vec<Sides<LightRange>> {
     let mut ranges = vec![[LightRange::default(); 2]; model.objects.len()];
     let [darkest, brightest] = background(model);
@@ -92,10 +92,10 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
     })
 }
 
-/// Returns the least that is left of light on a way through an object.
+/// Returns the least fraction of light that is left after a path through an object.
 fn left(object: &Object) -> Rgb {
     let Some(medium) = object.material.medium() else { return Rgb::ONE };
-    // A way through a box is no longer than its diagonal.
+    // A path through a box is no longer than its diagonal.
     let longest =
         object.shape.facts().bounds.map_or(f64::INFINITY, |Aabb { low, high }| (high - low).length());
     (1.0 - 1e-9) * medium.passed((1.0 + 1e-9) * longest)

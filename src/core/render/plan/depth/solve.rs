@@ -17,7 +17,7 @@ const ROUNDS: usize = 50;
 /// which.
 const PAIRS: usize = 64;
 
-/// The surfaces of a scene, and which of them rays may hit from which.
+/// The surfaces of a scene, and which others the rays from each may hit.
 pub(super) struct VisibleSurfaces {
     surfaces: Vec<SurfaceLight>,
     /// The indices of the surfaces from which rays continue, and whether rays that leave one on a side may hit it
@@ -32,8 +32,8 @@ pub(super) struct VisibleSurfaces {
 }
 
 impl VisibleSurfaces {
-    /// Makes the scene of a model's surfaces. `background` bounds the light of rays that hit nothing, times their path
-    /// length: they are not followed from where it is more than [`MAX_DIST`].
+    /// Prepares a model's surfaces. `background` bounds the light of rays that hit nothing, times their path length:
+    /// no ray starts where that is more than [`MAX_DIST`].
     pub fn new(model: &Model, surfaces: Vec<SurfaceLight>, background: f64) -> Self {
         let objects = &model.objects;
         let (shiny, matt): (Vec<_>, Vec<_>) =
@@ -66,8 +66,8 @@ impl VisibleSurfaces {
         Self { shiny: shiny.into_iter().map(meets).collect(), lies, matt_light, surfaces }
     }
 
-    /// Returns a bound on what primary rays return, times the path length, and for each object how rays continue from
-    /// it. `cuts` tells whether branches are cut at all.
+    /// Returns a bound on the light of primary rays, times the path length, and for each object how rays continue
+    /// from it. `cuts` tells whether branches are cut at all.
     pub fn bounds(&self, cuts: bool) -> (f64, Vec<ContinuationBounds>) {
         let infinite = || vec![[f64::INFINITY; 2]; self.shiny.len()];
         let own = |surface: &SurfaceLight| surface.own;
@@ -99,16 +99,16 @@ impl VisibleSurfaces {
         (hits.into_iter().fold(0.0, above), objects)
     }
 
-    /// Bounds what rays that leave each surface from which rays continue return, on each side; infinite where there is no
-    /// bound.
+    /// Bounds the light of rays that leave each side of the surfaces from which rays continue; infinite where there
+    /// is no bound.
     pub fn beyond(&self) -> impl Iterator<Item = (usize, Sides<f64>)> {
         let beyond = self.solve(&self.matt_light, |surface| surface.own);
         let beyond = beyond.unwrap_or_else(|| vec![[f64::INFINITY; 2]; self.shiny.len()]);
         self.shiny.iter().map(|(index, _)| *index).zip(beyond)
     }
 
-    /// Bounds what rays that leave each shiny surface return, given the surfaces' own light, and in `matt_light` that
-    /// of the others. Returns `None` where no bounds are found.
+    /// Bounds the light of rays that leave each shiny surface, given the surfaces' own light and, in `matt_light`,
+    /// that of the others. Returns `None` where no bounds are found.
     fn solve(
         &self,
         matt_light: &[Sides<f64>],
@@ -145,8 +145,8 @@ impl VisibleSurfaces {
         None
     }
 
-    /// Bounds what rays that leave each shiny surface return, given bounds on what the rays that continue from their
-    /// hits return.
+    /// Bounds the light of rays that leave each shiny surface, given bounds on the rays that continue from their
+    /// hits.
     fn step(
         &self,
         matt_light: &[Sides<f64>],
@@ -178,8 +178,8 @@ impl VisibleSurfaces {
         (0..met.len()).map(|index| [of(index, 0), of(index, 1)]).collect()
     }
 
-    /// Does the work of [`step`](Self::step) where each surface may be hit from each side of each other one; `met`
-    /// bounds what rays that hit each shiny surface return.
+    /// Implements [`step`](Self::step) for many surfaces, each of which may be hit from each side of the others.
+    /// `met` bounds the light of rays that hit each shiny surface.
     fn step_among_many(&self, matt_light: &[Sides<f64>], met: &[Sides<f64>]) -> Vec<Sides<f64>> {
         let met: Vec<_> = met.iter().map(|[outside, inside]| above(*outside, *inside)).collect();
         let brighter =
@@ -205,8 +205,8 @@ fn can_hit_itself(object: &Object, side: Side) -> bool {
     object.shape.can_hit_itself(side)
 }
 
-/// Tells on which sides of the plane that contains an object, if there is one, another object may be hit. `farthest` is the
-/// length of a path whose rounding is allowed for.
+/// Tells on which sides of the plane that contains an object, if there is one, another object may be hit. `farthest`
+/// is the length of a path whose rounding is allowed for.
 fn lies(of: &Object, object: &Object, farthest: f64) -> Sides<bool> {
     let Some([point, normal]) = of.shape.facts().plane else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();

@@ -1,4 +1,4 @@
-//! What an object's surface does with light, bounded over all of its points.
+//! Bounds on the light that an object's surface scatters, transmits and reflects, over all of its points.
 
 use super::branch::{Branch, ContinuationBounds, FAINT, REFLECTED};
 use super::sides::{Sides, above, gain};
@@ -29,7 +29,7 @@ impl BoundedLight {
     }
 }
 
-/// What an object's surface does with light: the largest magnitudes of any channel, or of one, at any point.
+/// Bounds on a surface's light: the largest magnitudes of any channel, or of one, at any point.
 #[derive(Clone, Copy)]
 pub(super) struct SurfaceLight {
     /// The surface's own light, times the path length.
@@ -40,13 +40,15 @@ pub(super) struct SurfaceLight {
     mirrored: f64,
     /// Whether light is divided between the two, by an interface.
     is_split: bool,
-    /// A factor of what an interface passes on: 1, or [`HELD`] where that alone bounds its light under the free rules.
+    /// A factor of the light that an interface passes on: 1, or [`HELD`] where only that gives a bound under the free
+    /// rules.
     held: f64,
 }
 
-/// Under the free rules, the fraction of light that an interface of a surface with light of its own is taken to pass
-/// on: no more than 8 such surfaces in a row pass on nearly all. Metal reflects all light that grazes it, and glass all
-/// that it totally reflects, so that nothing else bounds the sum of their highlights.
+/// Under the free rules, the fraction of light that bounds let an interface pass on, if its surface has light of its
+/// own. The assumption is that no more than 8 such surfaces in a row pass on nearly all light. Metal reflects all
+/// light that grazes it, and glass all light that it totally reflects, so nothing else bounds the sum of their
+/// highlights.
 const HELD: f64 = 7.0 / 8.0;
 
 impl SurfaceLight {
@@ -86,8 +88,8 @@ impl SurfaceLight {
         self.through != 0.0 || self.mirrored != 0.0
     }
 
-    /// Bounds what rays that hit the surface on each side return, given its own light and what rays that leave it on
-    /// each side return.
+    /// Bounds the light of rays that hit each side of the surface, given its own light and that of rays that leave
+    /// each side.
     pub fn met(&self, own: f64, [outside, inside]: [f64; 2]) -> [f64; 2] {
         let continuation = |through: f64, mirrored: f64| {
             let (through, mirrored) = (gain(self.through, through), gain(self.mirrored, mirrored));
@@ -101,7 +103,7 @@ impl SurfaceLight {
         if self.is_split && self.own == 0.0 { 0.0 } else { 1.0 }
     }
 
-    /// Computes how rays continue from the surface, given bounds on what they return. `whole` is the share of a primary
+    /// Computes how rays continue from the surface, given bounds on their light. `whole` is the share of a primary
     /// ray, in the unit of `shares`.
     pub fn continuation(
         &self,
@@ -163,7 +165,7 @@ fn glints(model: &Model, object: &Object, of: BoundedLight, any_light_comes: boo
     scattered(model, object, Rgb::ZERO, [Rgb::ZERO, Rgb::ONE], of, any_light_comes)
 }
 
-/// Bounds ambient light and what an object makes of the light of lamps, given the largest of its reflectivities.
+/// Bounds the ambient light of an object and the light of lamps that it scatters, given its largest reflectivities.
 fn scattered(
     model: &Model,
     object: &Object,

@@ -1,17 +1,17 @@
-//! Convex regions, and tests for what lies outside of them.
+//! Convex regions, and tests of whether objects lie outside of them.
 
 use crate::geometry::aabb::Aabb;
 use glam::DVec3;
 
-/// The hull of some points and of the rays that leave them in some directions.
+/// The convex hull of some points and of the rays that leave them in some directions.
 ///
-/// A hull is stored as half-spaces. Each half-space contains the hull, so that a point outside of one is certainly
-/// outside of the hull. Their planes are the hull's faces and, for boxes that lie askew to the faces, the planes
-/// through its edges along the axes.
+/// A hull is stored as half-spaces. Each half-space contains the hull, so a point outside of a half-space is outside
+/// of the hull. Their planes are the hull's faces and, for boxes that lie askew to the faces, the planes through its
+/// edges along the axes.
 pub(super) struct Hull {
     points: Vec<DVec3>,
     dirs: Vec<DVec3>,
-    /// The unit normals of the half-spaces' planes, and how far along them the planes lie, in world units.
+    /// The half-spaces' planes: their unit normals, and their distances along these from the world's origin.
     faces: Vec<(DVec3, f64)>,
     /// How far outside something must be to count as outside, in world units.
     margin: f64,
@@ -55,8 +55,8 @@ impl Hull {
         }
     }
 
-    /// Cuts off what lies beyond a plane, given by a point and the unit normal that points beyond. The points and the
-    /// directions stay what they are.
+    /// Cuts off the part beyond a plane, given by a point and the unit normal that points beyond. The hull's points
+    /// and directions do not change.
     pub fn cut(&mut self, at: DVec3, normal: DVec3) {
         self.faces.push((normal, normal.dot(at)));
     }

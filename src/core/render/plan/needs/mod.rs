@@ -1,21 +1,22 @@
-//! What an image needs of its scene: the objects that some ray may meet, and the lights that may light what is seen.
+//! The parts of a scene that its image needs: the objects that rays may hit, and the lights that may light what is
+//! seen.
 //!
 //! **Views.** Primary rays lead away from the viewer, between the edges of the image. Where they may meet a mirror in a
 //! plane, the rays that it reflects lead away from the viewer's mirror image, in front of the mirror; and so on from
 //! mirror to mirror. Glass does not turn rays, unless its material has an interface. Such glass and curved mirrors may
 //! show everything, and so may more than `MAX_VIEWS` views: then no object is left out.
 //!
-//! **Lights.** A light is left out where it adds nothing to anything that a view may meet: it lies behind the object's
-//! plane, it does not shine on the object's region ([`is_clear_of`](crate::world::light::Light::is_clear_of)), or the
-//! product of its colour and the object's reflectivities is black. The plan also leaves out lights that a closed object
-//! keeps from everything that is seen.
+//! **Lights.** A light is left out where it adds nothing to any object that a view may show: the light lies behind
+//! the object's plane, it does not shine on the object's region
+//! ([`is_clear_of`](crate::world::light::Light::is_clear_of)), or the product of its colour and the object's
+//! reflectivities is black. The plan also leaves out lights that a closed object hides from all visible points.
 //!
 //! **Objects.** An object is left out where it is clear of all views, and of all paths from what is seen to a light
 //! that is needed. No ray could meet an object that is left out, so the image stays the same to the byte. All tests
 //! have margins far above the rounding errors of rays.
 //!
-//! Where pixels take more samples the less certain their colours are, nothing is left out: that is decided by pixels around
-//! the image too, and by which lights shine on what a ray meets, even on black.
+//! With adaptive sampling, nothing is left out: a pixel's number of samples also depends on pixels around the image,
+//! and on the lights that shine on its hits, even on black ones.
 //!
 //! The notes' program tests every ray against every shape, so with `--method classic` nothing is left out.
 
@@ -35,14 +36,14 @@ use view::{View, VisibleRegion};
 /// The maximum number of views, of the viewer and of the mirrors together.
 const MAX_VIEWS: usize = 16;
 
-/// The number of objects from which on they are judged on all threads.
+/// The minimum number of objects that are judged on all threads.
 const MANY: usize = 1 << 12;
 
 /// What an image needs.
 pub struct Needs {
     /// The indices of the lights that are needed.
     pub lights: Vec<usize>,
-    /// The indices of the lights that are not, each with the reason.
+    /// The indices of the other lights, each with the reason.
     pub dark: Vec<(usize, UnlitReason)>,
     /// The indices of the objects that are not needed.
     pub unreached: Vec<usize>,
@@ -59,7 +60,7 @@ pub enum UnlitReason {
     Behind,
     /// It does not shine on what is seen.
     Aside,
-    /// Each of these holds for some of what is seen.
+    /// Several of these reasons hold, each for a part of what is seen.
     Mixed,
     /// A closed object is between it and all that is seen.
     ShutOut,
@@ -79,7 +80,7 @@ impl UnlitReason {
 }
 
 impl Needs {
-    /// Everything.
+    /// Returns the needs of a model of which nothing is left out.
     pub fn all(model: &Model) -> Self {
         let lights = (0..model.lights.len()).collect();
         Self { lights, dark: Vec::new(), unreached: Vec::new(), clearance: f64::INFINITY }
@@ -93,8 +94,8 @@ impl Needs {
         }
     }
 
-    /// Finds what the image of the model's camera needs, given the objects' bounding boxes. `depth` has the mirrors
-    /// that reflect nothing.
+    /// Finds what the image of the model's camera needs, given the objects' bounding boxes. `depth` tells which
+    /// mirrors reflect nothing.
     pub fn of(model: &Model, bounds: &[Option<Aabb>], depth: Option<&Depth>) -> Self {
         if model.camera.value.adaptive.is_some() {
             return Self::all(model);
@@ -118,13 +119,13 @@ struct KnownScene<'s> {
     depth: Option<&'s Depth>,
 }
 
-/// The indices of the objects that a view may show; without a view, what is seen from anywhere.
+/// A view, and the indices of the objects that it may show; without a view, of those that are seen from anywhere.
 type Shown<'v> = (Option<&'v View>, &'v [usize]);
 
 impl KnownScene<'_> {
     fn needs(&self, view: View) -> Needs {
         let views = self.views(view);
-        // Where anything may be seen, it is seen from anywhere.
+        // Without views, each object may be seen from anywhere.
         let all: Vec<usize>;
         let shown: Vec<Shown> = match &views {
             Some(views) => views.iter().map(|(view, shown)| (Some(view), &shown[..])).collect(),
@@ -151,7 +152,7 @@ impl KnownScene<'_> {
             let (object, bounds) = (&self.model.objects[*index], self.bounds[*index].as_ref());
             let views = views.iter().map(|(view, _)| view.clearance(object, bounds));
             let paths = regions.iter().map(|region| view::clearance(region, object, bounds));
-            // Stops at the first that the object may meet.
+            // Stops at the first region that the object may meet.
             views.chain(paths).try_fold(f64::INFINITY, |least, one| (one > 0.0).then_some(least.min(one)))
         };
         let clear = parallel::map_ranges(candidates.len(), MANY, &|range| {
@@ -166,8 +167,8 @@ impl KnownScene<'_> {
         needs
     }
 
-    /// Tells whether a light may light what any view shows, or why it does not. If `finds_paths`, adds to `regions` those in
-    /// which its shadow rays run.
+    /// Tells whether a light may light an object that a view shows, or why it does not. If `finds_paths`, adds the
+    /// regions of its shadow rays to `regions`.
     fn lit(
         &self,
         light: &Lamp,
@@ -249,7 +250,7 @@ impl KnownScene<'_> {
         })
     }
 
-    /// Returns why a light adds nothing to where an object is seen; `None` where it may.
+    /// Returns why a light adds nothing to the visible part of an object; `None` where it may.
     fn darkness(
         &self,
         light: &Lamp,
@@ -281,7 +282,7 @@ impl KnownScene<'_> {
         light.is_clear_of(&seen.bounds.with_slack(0.0)).then_some(UnlitReason::Aside)
     }
 
-    /// Tells whether all light that an object reflects of a light is black.
+    /// Tells whether an object reflects nothing of a light.
     fn is_black(&self, light: &Lamp, object: &Object) -> bool {
         let look: Option<Look> = object.shader.brightest(&object.material);
         let (Some(sent), Some(look)) = (light.brightest(), look) else { return false };
@@ -290,8 +291,8 @@ impl KnownScene<'_> {
         if object.material.glints() && sent != Rgb::ZERO {
             return false;
         }
-        // Where rays continue, shadow rays count toward the limit of rays, so that they may make a difference. Within
-        // 1e-154 of a point, distances are 0, and 0 divided by them is no number.
+        // Where rays continue, shadow rays count toward the limit of rays, so even black ones may make a difference.
+        // Within 1e-154 of a point, distances are 0, and 0 divided by 0 is NaN.
         let is_plain = self.depth.is_none() && light.location().abs().max_element() > 1e-100;
         is_matt_black && (is_plain || look.diffuse == Rgb::ZERO && shines == Rgb::ZERO)
     }

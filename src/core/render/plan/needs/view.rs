@@ -1,4 +1,4 @@
-//! Views: the rays of an image, from the viewer and as mirrors turn them.
+//! Views: the rays of an image, from the viewer and after their reflection by plane mirrors.
 
 use super::hull::Hull;
 use crate::geometry::aabb::Aabb;
@@ -19,8 +19,8 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Returns the primary rays of an image, with all samples of its pixels; `None` where they do not start at one point,
-    /// or are not known to be within half of space.
+    /// Returns the primary rays of an image, with all samples of its pixels; `None` where they do not start at one
+    /// point, or are not known to lie in a half-space.
     pub fn of(camera: &Sensor, margin: f64) -> Option<Self> {
         let apex = camera.origins().middle;
         let dirs = camera.camera.corners(camera.pixels, margin)?;
@@ -28,7 +28,7 @@ impl View {
         is_sound.then(|| Self { apex, dirs, hull: Hull::new(vec![apex], dirs.to_vec(), margin), margin })
     }
 
-    /// Returns the rays as a mirror in a plane turns them, given by a point and the unit normal.
+    /// Returns the rays after their reflection by a plane mirror, given by a point and the unit normal.
     pub fn mirrored(&self, at: DVec3, normal: DVec3) -> Self {
         let turned = |dir: DVec3| dir - 2.0 * dir.dot(normal) * normal;
         let height = (self.apex - at).dot(normal);
@@ -45,7 +45,7 @@ impl View {
         clearance(&self.hull, object, bounds)
     }
 
-    /// Returns where an object may be seen.
+    /// Returns the region in which an object may be seen.
     pub fn seen(&self, object: &Object, bounds: Option<&Aabb>) -> VisibleRegion {
         if bounds.is_some() {
             return VisibleRegion::of(bounds);
@@ -89,7 +89,7 @@ impl View {
             vec![location]
         };
         points.push(self.apex);
-        // Deeper than this, directions are as good.
+        // At greater depths, directions serve as well as points.
         let is_near = far < 1e6 * (1.0 + self.apex.abs().max_element());
         if is_near && self.dirs.iter().all(|dir| dir.dot(middle) > 0.1) {
             points.extend(self.dirs.map(|dir| self.apex + (1.0 + self.margin) * far / dir.dot(middle) * dir));
@@ -99,7 +99,7 @@ impl View {
     }
 }
 
-/// Where an object may be seen.
+/// The region in which an object may be seen.
 pub(super) struct VisibleRegion {
     /// A box around the points, which may be unbounded.
     pub bounds: Aabb,
@@ -108,7 +108,7 @@ pub(super) struct VisibleRegion {
 }
 
 impl VisibleRegion {
-    /// Returns where an object with this bounding box may be seen from anywhere.
+    /// Returns the region in which an object with this bounding box may be seen from anywhere.
     pub fn of(bounds: Option<&Aabb>) -> Self {
         let everywhere = Aabb { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY };
         Self { bounds: bounds.copied().unwrap_or(everywhere), corners: None }
