@@ -13,8 +13,8 @@ pub enum Accuracy {
     /// First hits found with error bounds, and hit points on the surface up to rounding.
     #[default]
     Exact,
-    /// Like `Exact`, but in double-double arithmetic where a hit has a closed form. Shapes whose hits are searched for have the
-    /// numbers of `Exact`.
+    /// Like `Exact`, but in double-double arithmetic where a hit has a closed form. Shapes whose hits are searched
+    /// for give the same numbers as with `Exact`.
     Strict,
 }
 
@@ -70,7 +70,7 @@ pub trait AccuracyTag: Copy + Send + Sync + 'static {
     /// The accuracy that the marker stands for.
     const ACCURACY: Accuracy;
 
-    /// Whether hits are found by the course notes' formula. As a constant, it selects code when that is compiled.
+    /// Whether hits are found by the course notes' formula. As a constant, it selects code at compile time.
     const IS_CLASSIC: bool = matches!(Self::ACCURACY, Accuracy::Classic);
 }
 

@@ -23,7 +23,7 @@ pub struct AnyShape {
 }
 
 impl AnyShape {
-    /// Wraps a shape that takes packets and proofs itself.
+    /// Wraps a shape with its own functions for packets and proofs.
     pub fn of_packets(shape: impl PacketShape + 'static) -> Self {
         let Facts { can_hit_itself, is_two_sided, is_smooth, .. } = shape.hittable().facts();
         Self { shape: Box::new(shape), can_hit_itself, is_two_sided, is_smooth }
@@ -64,7 +64,7 @@ impl AnyShape {
         &*self.shape
     }
 
-    /// Returns a bracket of the distance of the ray's first hit, as tight as is quickly known.
+    /// Returns a bracket of the distance of the ray's first hit, as tight as a quick computation makes it.
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         self.shape.t_bounds(&ray.into(), range)
     }
@@ -105,8 +105,8 @@ impl AnyShape {
         self.shape.premises(of, each);
     }
 
-    /// Tells whether the shape has an equation, and so has each shape that it is made of. About a shape without an
-    /// equation, nothing is proven but that its hits lie in its bounds.
+    /// Tells whether the shape and all shapes that it is made of have equations. For a shape without an equation, the
+    /// only proof is that its hits lie in its bounds.
     pub fn is_certified(&self) -> bool {
         let mut is_certified = true;
         self.premises("", &mut |_, premise| is_certified &= premise != Premise::NoEquation);
@@ -120,8 +120,8 @@ impl AnyShape {
         if is_open && self.is_parallel(sight) { Enclosure::Misses } else { found }
     }
 
-    /// Tells whether a ray is parallel to an unbounded shape, as a plane is to the rays of a row of pixels at the
-    /// horizon. For numbers such as a third, no number of digits proves that, but fractions do.
+    /// Tells whether a ray is parallel to an unbounded shape, as the rays of a row of pixels at the horizon are to a
+    /// plane. For numbers such as 1/3, no number of digits proves that, but fractions do.
     fn is_parallel(&self, sight: &Sight) -> bool {
         let found = |proven| HitProofs::<Fraction>::first_hit(proven, &sight.line(), None).0;
         self.facts().bounds.is_none()

@@ -19,9 +19,9 @@ pub trait Background: Send + Sync {
     /// and glass.
     fn brightest(&self) -> Rgb;
 
-    /// Returns the numbers of columns and rows of an equirectangular map, as of an environment, that make the colours
-    /// vary little within a cell; `None` if the colours vary slowly everywhere. The map decides in which directions
-    /// light is sampled, and changes no mean.
+    /// Returns the numbers of columns and rows of an equirectangular map in whose cells the colours vary little;
+    /// `None` if the colours vary slowly everywhere. The map decides in which directions light is sampled, and
+    /// changes no mean.
     fn detail(&self) -> Option<[u32; 2]> {
         None
     }

@@ -1,4 +1,4 @@
-//! Balls that shine, and which of their points are seen.
+//! Balls that shine, and the points of them that are seen.
 
 use crate::world::directions::in_cone;
 use glam::{DVec2, DVec3};
@@ -19,13 +19,14 @@ pub struct BallSample {
     pub toward: DVec3,
     /// The distance to it, in world units.
     pub distance: f64,
-    /// The solid angle from which it was chosen, evenly, divided by pi: 2 at most.
+    /// The solid angle over which it was chosen evenly, divided by pi; at most 2.
     pub solid_angle_over_pi: f64,
 }
 
 impl Ball {
-    /// Chooses a point as seen from a place by two numbers from 0 to 1, by solid angle: in the cone that touches the ball, or
-    /// from inside it, in the half space of the normal. `None` where the ball is too far away for a direction.
+    /// Chooses a point as seen from a place by two numbers from 0 to 1, evenly by solid angle: in the cone that
+    /// touches the ball, or, from inside the ball, in the half-space of the normal. `None` where the ball is too far
+    /// away for a direction.
     pub fn sample(&self, at: DVec3, normal: DVec3, numbers: DVec2) -> Option<BallSample> {
         let between = self.middle - at;
         let (distance, radius) = (between.length(), self.radius);

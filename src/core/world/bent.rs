@@ -1,4 +1,4 @@
-//! Shaders that bend normals, and leave the colours to another one.
+//! Shaders that bend normals, and leave the colours to another shader.
 
 use crate::world::body::AnyShader;
 use crate::world::certify::Precise;
@@ -10,7 +10,7 @@ use tabray_exact::interval::Interval;
 
 /// How normals are bent.
 pub trait Bend: Send + Sync {
-    /// What it sees of a point beside the normal.
+    /// The properties of a point that it sees besides the normal.
     const SEES: ShaderInputs;
 
     /// Returns the outward unit normal with which a point is shaded instead of this one.
@@ -27,7 +27,7 @@ pub trait Bend: Send + Sync {
     }
 }
 
-/// A shader that bends the normals of another one.
+/// A shader that bends the normals of another shader.
 pub struct Bent<B> {
     /// How normals are bent.
     pub bend: B,

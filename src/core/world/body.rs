@@ -1,4 +1,4 @@
-//! What an object's constructor returns.
+//! Bodies: the results of objects' constructors.
 
 use crate::world::any_shape::AnyShape;
 use crate::world::cutout::Cutout;
@@ -108,7 +108,7 @@ pub struct Body {
     pub warnings: Vec<Warning>,
     /// The files that the object was read from besides those that its attributes name, whether they exist or not.
     pub files: Vec<PathBuf>,
-    /// The memory that the object takes beside the scene, in bytes.
+    /// The memory that the object takes in addition to the scene, in bytes.
     pub bytes: u64,
     /// The number of objects nested in it: 1 for a copy of a shape, 2 for a copy of a copy.
     pub depth: u32,
@@ -122,7 +122,7 @@ pub struct Body {
     pub solid: Option<Box<Solid>>,
     /// Further bodies that are seen together with this one.
     pub more: Vec<Body>,
-    /// Whether it keeps its own look where the object that it is seen with is given a shader.
+    /// Whether it keeps its own look when the object that it is seen with is given a shader.
     pub keeps_look: bool,
 }
 
@@ -131,7 +131,7 @@ pub struct Body {
 pub struct Solid {
     /// Its parts.
     pub parts: Vec<Part>,
-    /// The condition on the parts that a point lies in, which decides whether the point lies in the solid.
+    /// The condition on the parts in which a point lies. It decides whether the point lies in the solid.
     pub tree: Tree,
     /// Whether it is cut open: only the surface of its first part is seen, and it has no inside.
     pub is_open: bool,
@@ -241,7 +241,7 @@ impl Body {
         body
     }
 
-    /// Takes from the shape what the shader cuts out.
+    /// Removes the parts of the shape that the shader cuts out.
     pub fn cut_out(self) -> Self {
         if self.more.is_empty() && !self.shader.cuts_out() {
             return self;

@@ -51,9 +51,9 @@ pub trait Camera: fmt::Debug + Send + Sync + 'static {
         None
     }
 
-    /// Returns the ray before anything is rounded. Each component of the direction that [`ray`](Self::ray) returns is
-    /// within 3 units of 2^-53 of the component here, and the origin is the same. The default treats the numbers of
-    /// `ray` as exact, so that proofs are about the rays as computed.
+    /// Returns the unrounded ray. Each component of the direction that [`ray`](Self::ray) returns is within 3 units
+    /// of 2^-53 of the component here, and the origin is the same. The default treats the numbers of `ray` as exact,
+    /// so that proofs are about the rays as computed.
     fn sight(&self, at: &ImagePoint, lens: DVec2) -> Sight {
         Sight::along(&self.ray(at, lens))
     }
@@ -95,7 +95,7 @@ pub struct Origins {
 }
 
 impl Origins {
-    /// The origins of rays that all start at one point.
+    /// Returns the origins of rays that all start at one point.
     pub fn at(middle: DVec3) -> Self {
         Self { middle, radius: 0.0 }
     }
@@ -160,7 +160,7 @@ impl<T: Camera> PacketCamera for T {
 }
 
 kernels! {
-    /// Writes the directions of the rays that are seen at many places, without a lens.
+    /// Writes the directions of the rays through many places, without a lens.
     fn look[T: Camera](camera: &T, pixels: [usize; 2], x: &[f64], y: &[f64]) => dirs {
         let count = x.len();
         let (y, mut dirs) = (&y[..count], dirs.first(count));
@@ -178,7 +178,7 @@ kernels! {
         }
     }
 
-    /// Writes the rays that are seen at many places.
+    /// Writes the rays through many places.
     fn look_from[T: Camera](camera: &T, places: &Places) => origins, dirs {
         let Places { pixels, x, y, lens } = *places;
         let count = x.len();

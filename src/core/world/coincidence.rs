@@ -26,7 +26,7 @@ pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub(crate) const LEAST_COSINE: f64 = 1.0 / (1 << 26) as f64;
 
 /// The relative difference below which two distances may be equal up to rounding: [`ROUNDING`] divided by a cosine of
-/// 2^-18. `a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does` in `tests/shapes` holds it.
+/// 2^-18. `a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does` in `tests/shapes` tests it.
 pub(crate) const CLOSE: f64 = 1.0 / (1 << 30) as f64;
 
 /// Returns the difference up to which two distances along a ray may be equal up to rounding, in world units: [`CLOSE`] of
@@ -38,7 +38,7 @@ pub(crate) fn close(ray: &Ray, distance: f64) -> f64 {
 }
 
 /// A bound on the computed difference of two equal distances in double-double arithmetic, as a fraction of the
-/// coordinates: about 8000 times its unit of rounding, 2^-106. The test named at [`CLOSE`] holds it.
+/// coordinates: about 8000 times its unit of rounding, 2^-106. The test named at [`CLOSE`] checks it.
 pub(crate) const SAME: f64 = 1e-28;
 
 /// Returns a bound on how far the computed point of a hit is from the true one, in world units: the error along the ray

@@ -17,7 +17,7 @@ use tabray_exact::double_double::DoubleDouble;
 /// The maximum number of cut parts that a ray passes on its way. Beyond them, it hits nothing.
 const MOST_PASSED: usize = 1 << 16;
 
-/// A shape without the parts that a shader cuts out. Rays pass there.
+/// A shape without the parts that a shader cuts out. Rays pass through the holes.
 pub(crate) struct Cutout {
     shape: AnyShape,
     shader: Arc<dyn PacketShader>,
@@ -34,8 +34,8 @@ impl Cutout {
         Shape::new(Self { shape, shader }).by()
     }
 
-    /// Returns the side on which a ray in this direction leaves a point of the surface that is cut out; `None` where the surface
-    /// is there.
+    /// Returns the side on which a ray in this direction leaves a point of the surface that is cut out; `None` where
+    /// the point is not cut out.
     fn passes(&self, at: DVec3, dir: DVec3) -> Option<Side> {
         let normal = self.shape.normal(at);
         let side = Side::seen_along(dir, normal);

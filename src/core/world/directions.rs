@@ -3,15 +3,16 @@
 use crate::world::panel::on_disc;
 use glam::{DVec2, DVec3};
 
-/// Chooses a direction in the half space of a unit normal by two numbers from 0 to 1, with a density of the cosine over pi.
+/// Chooses a direction in the half-space of a unit normal by two numbers from 0 to 1, with a density of the cosine
+/// over pi.
 pub fn by_cosine(normal: DVec3, numbers: DVec2) -> DVec3 {
     let DVec2 { x, y } = on_disc(numbers);
     let (across, up) = normal.any_orthonormal_pair();
     (x * across + y * up + (1.0 - x * x - y * y).max(0.0).sqrt() * normal).normalize()
 }
 
-/// Chooses a direction around a unit axis by two numbers from 0 to 1, with the same density everywhere within an angle whose
-/// cosine is `1 - height`.
+/// Chooses a direction around a unit axis by two numbers from 0 to 1, with the same density everywhere within an
+/// angle whose cosine is `1 - height`.
 pub fn in_cone(axis: DVec3, height: f64, numbers: DVec2) -> DVec3 {
     let disc = on_disc(numbers);
     // Equal areas of a disc are equal heights of the cap.

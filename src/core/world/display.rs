@@ -1,4 +1,4 @@
-//! From light to what an image shows: exposure, tone and transfer, and the rules that say so.
+//! From light to shown colours: exposure, tone and transfer, and the rules that choose them.
 
 use crate::world::material::Rgb;
 use crate::world::rules::Rules;
@@ -30,7 +30,7 @@ pub enum Transfer {
 const LINE: (f64, f64) = (0.003_130_8, 12.92);
 
 impl Transfer {
-    /// Encodes light from 0 to 1. What is encoded grows with the light.
+    /// Encodes light from 0 to 1. The code grows with the light.
     pub fn encode(self, light: f64) -> f64 {
         match self {
             Self::Linear => light,
@@ -91,8 +91,8 @@ fn neutral(light: Rgb) -> Rgb {
     (light * (new / peak)).lerp(Rgb::splat(new), white)
 }
 
-/// Bounds what the neutral tone mapper makes of light between these bounds, which are finite and not below 0: a channel
-/// may fall where another one grows.
+/// Bounds the results of the neutral tone mapper for light between these bounds, which are finite and not below 0. A
+/// channel may fall where another one grows.
 fn neutral_within([low, high]: [Rgb; 2]) -> [Rgb; 2] {
     let [least, most] = [offset(low.min_element()), offset(high.min_element())];
     let (low, high) = ((low - most).max(Rgb::ZERO), (high - least).max(Rgb::ZERO));
@@ -207,7 +207,7 @@ impl Display {
         }
     }
 
-    /// Returns light between two bounds that is shown as about the middle of the colours shown for the bounds.
+    /// Returns light between two bounds whose shown colour is about midway between those of the bounds.
     pub fn middle(&self, [low, high]: [Rgb; 2]) -> Rgb {
         let gain = self.gain;
         let channel = |low: f64, high: f64| {

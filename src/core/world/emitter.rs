@@ -1,4 +1,4 @@
-//! Lights that are spread out, over a surface or over the sky: the trait that a plugin implements beside
+//! Extended lights, over a surface or over the sky: the trait that a plugin implements besides
 //! [`Light`](crate::world::light::Light).
 //!
 //! A light of radiance L adds `diffuse / pi` times the integral of `L cos(theta) V` over the directions in which it is
@@ -13,7 +13,7 @@ use crate::world::panel::Panel;
 use crate::world::sky_map::SkyMap;
 use glam::{DVec2, DVec3};
 
-/// A light that is spread out.
+/// An extended light.
 pub trait Emitter: Send + Sync {
     /// Chooses a point of the light by two numbers from 0 to 1, as seen from a point `at` with a unit normal; `None`
     /// where the numbers stand for no point of the light.
@@ -37,13 +37,13 @@ pub struct LightSample {
     pub toward: DVec3,
     /// The distance up to which objects can be in the light's way, in world units; infinite for light from the sky.
     pub distance: f64,
-    /// The radiance of the sample, divided by pi and by the density of such samples per unit of solid angle. The cosine of
-    /// the angle at which the light arrives is not in it.
+    /// The radiance of the sample, divided by pi and by the density of such samples per unit of solid angle, without
+    /// the cosine of the angle at which the light arrives.
     pub light: Rgb,
 }
 
-/// The points of a light, for proofs of what it adds. Its radiance at them is what the light's
-/// [`enclose`](crate::world::light::Light::enclose) returns.
+/// The points of a light, for proofs of its contribution. The light's
+/// [`enclose`](crate::world::light::Light::enclose) returns its radiance at them.
 #[derive(Clone, Copy)]
 pub enum Extent<'e> {
     /// The points of a flat panel, chosen by [`Panel::sample`].

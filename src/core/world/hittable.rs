@@ -37,7 +37,7 @@ pub trait Hittable: Send + Sync {
     /// Returns the unit normal at a point of the surface.
     fn normal(&self, at: DVec3) -> DVec3;
 
-    /// Returns what the shape is, apart from any point and any ray.
+    /// Returns the properties of the shape that depend on no point and no ray.
     fn facts(&self) -> Facts;
 
     /// Returns the unit normal for shading at a point of the surface, where it differs from the surface's own: a mesh
@@ -53,8 +53,9 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Says why the surface is not closed, phrased to follow "is not a closed shape: "; `None` for a closed surface, whose normal
-    /// points outward and whose equation, if it has one, is below 0 inside. Only closed shapes can be parts of solids.
+    /// Says why the surface is not closed, phrased to follow "is not a closed shape: "; `None` for a closed surface,
+    /// whose normal points outward and whose equation, if it has one, is below 0 inside. Only closed shapes can be
+    /// parts of solids.
     fn why_not_closed(&self) -> Option<&str> {
         Some("it has no inside")
     }
@@ -82,7 +83,8 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Returns how the surface bends at one of its points, for shaders; `None` for a shape that is given by no formula.
+    /// Returns the curvature of the surface at one of its points, for shaders; `None` for a shape that is given by no
+    /// formula.
     fn curvature(&self, _at: DVec3) -> Option<Curvature> {
         None
     }
@@ -92,8 +94,9 @@ pub trait Hittable: Send + Sync {
         self.face(ray.at(distance))
     }
 
-    /// Returns what [`normal`](Self::normal), [`uv`](Self::uv) and [`face_hit`](Self::face_hit) say of the point at which a ray
-    /// hits the shape at a distance in world units. A shape of many faces finds the face once.
+    /// Returns the results of [`normal`](Self::normal), [`uv`](Self::uv) and [`face_hit`](Self::face_hit) for the
+    /// point at which a ray hits the shape, at a distance in world units. A shape of many faces finds the face only
+    /// once.
     fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3) -> SurfaceHit {
         SurfaceHit { normal: self.normal(at), uv: self.uv(at), face: self.face_hit(ray, distance) }
     }
@@ -125,8 +128,8 @@ pub trait Hittable: Send + Sync {
     }
 }
 
-/// How a surface that is given by a formula bends at a point. A value that does not exist there, as at the tip of a
-/// cone, is NaN or infinite.
+/// The curvature of a surface that is given by a formula, at a point. A value that does not exist there, as at the
+/// tip of a cone, is NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curvature {
     /// The length of the formula's gradient.
@@ -147,13 +150,14 @@ pub trait Bracketed: Hittable {
     const BY_BEAMS: bool = false;
 
     /// Returns a bracket of the [`distance`](Hittable::distance) of each ray that this one stands for. In the world,
-    /// that is the ray itself; in a copy's coordinates, all rays within a drift.
+    /// that is the ray itself; in a copy's coordinates, all rays within its error.
     ///
     /// Where the ray may start on the shape, because the shape touches the origin within the range's `origin_error`,
     /// the bracket has no certain upper end.
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
-    /// Computes a bracket of the first hit of each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, in a range of its own.
+    /// Computes a bracket of the first hit of each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in
+    /// its own range.
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
         rays.each(ranges, brackets, |ray, range| self.t_bounds(ray, range));
     }
@@ -191,7 +195,7 @@ pub trait Searched: Certified {
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64;
 }
 
-/// What a shape is, apart from any point and any ray.
+/// The properties of a shape that depend on no point and no ray.
 ///
 /// A shape that is made of another one copies its facts, and changes those that differ: `..self.shape.facts()`.
 #[derive(Clone, Copy, Debug)]

@@ -14,11 +14,11 @@ use image::{
 use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
-/// The memory that a decoder may take beside the image, in bytes.
+/// The memory that a decoder may take in addition to the image, in bytes.
 const ASIDE: u64 = 1 << 20;
 
-/// Types of files that cannot be read and that the reader of images does not recognise: the bytes that tell them, where
-/// these are, and the name of the type.
+/// File types that the image reader neither reads nor recognises: their first bytes, the offset of these, and the
+/// name of the type.
 const OTHERS: [(&[u8], usize, &str); 7] = [
     (b"<", 0, "XML, as SVG is"),
     (b"8BPS", 0, "a file of Photoshop"),
@@ -32,7 +32,7 @@ const OTHERS: [(&[u8], usize, &str); 7] = [
 const SEES_THROUGH: &str =
     "has transparent texels, which do not show what is behind an object but its own colour";
 
-/// The texels of an image, with remarks on what they show differently from it.
+/// The texels of an image, with remarks on their differences from the image.
 pub(super) type Decoded = (Texels, Vec<&'static str>);
 
 /// Decodes an image whose bytes are given.
@@ -101,7 +101,7 @@ fn decode_from(
     Ok(texels(picture, is_light, is_opaque, orientation, display))
 }
 
-/// Returns the memory that an image takes beside what its decoder returns, in bytes.
+/// Returns the memory that an image takes in addition to its decoder's result, in bytes.
 fn beside_decoded(
     format: ImageFormat,
     length: u64,
@@ -109,7 +109,7 @@ fn beside_decoded(
     (colours, is_light, orientation): (ColorType, bool, Orientation),
 ) -> u64 {
     let each = if is_light { 4 } else { 1 };
-    // As it is decoded, as red, green and blue, and turned.
+    // The copies: as decoded, as red, green and blue, and turned.
     let copies = match colours {
         ColorType::Rgb8 => 0,
         colours if colours.has_alpha() => each * (4 + 3) + 3,
@@ -157,13 +157,13 @@ fn texels(
     (texels, remarks)
 }
 
-/// Returns the greatest length of a row of a PNG that begins so, in bytes; `None` for another image.
+/// Returns the greatest length of a row of a PNG with this beginning, in bytes; `None` for another image.
 fn row_of_png(head: &[u8]) -> Option<u64> {
     let width = head.strip_prefix(b"\x89PNG\r\n\x1a\n")?.get(8..12)?;
     Some(8 * u64::from(u32::from_be_bytes(width.try_into().ok()?)))
 }
 
-/// Says what a file is that is no image known to the reader.
+/// Names the type of a file that the image reader does not know.
 fn other(mut file: impl Read + Seek) -> String {
     let mut start = [0; 16];
     let read = file.rewind().and_then(|()| file.read(&mut start));
@@ -183,7 +183,7 @@ fn is_bright(picture: &DynamicImage) -> bool {
     }
 }
 
-/// Returns how far the pixels of an image are opaque, if any of them is not.
+/// Returns the opacity of an image's pixels, if any pixel is not opaque.
 fn alpha_of(picture: &DynamicImage) -> Option<GrayImage> {
     let picture = picture.to_luma_alpha8();
     let is_opaque = picture.pixels().all(|pixel| pixel.0[1] == u8::MAX);

@@ -33,8 +33,8 @@ pub trait Interface: Send + Sync {
         Law::Unknown
     }
 
-    /// Returns how rough the surface is: 0 if it is smooth, and at most 1. It is the same in every call. The rays of a rough
-    /// surface cross facets of it: [`cross`](Self::cross) is given the normal of one.
+    /// Returns how rough the surface is: 0 if it is smooth, and at most 1. It is the same in every call. Rays cross
+    /// facets of a rough surface: [`cross`](Self::cross) gets the normal of a facet.
     fn roughness(&self) -> f64 {
         0.0
     }
@@ -43,11 +43,12 @@ pub trait Interface: Send + Sync {
 /// The law of an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Snell's law and Fresnel's equations for light that is not polarised, by the refractive index inside, relative to outside.
+    /// Snell's law and Fresnel's equations for light that is not polarised, by the refractive index inside, relative
+    /// to outside.
     Fresnel(f64),
     /// Schlick's approximation, by the fractions of light that are reflected along the normal; the rest is absorbed.
     Schlick(DVec3),
-    /// Any other.
+    /// Another law.
     Unknown,
 }
 
@@ -79,10 +80,10 @@ impl Medium {
         self.at
     }
 
-    /// Returns the fraction of light that passes a way of this length, in world units.
+    /// Returns the fraction of light that passes along a path of this length, in world units.
     pub fn passed(&self, length: f64) -> DVec3 {
         let lengths = length / self.at;
-        // On an endless way, all is lost of what any is lost of.
+        // On an endless path, a channel that loses any light loses all of it.
         self.logarithms.map(|left| if left == 0.0 { 1.0 } else { libm::exp(left * lengths) })
     }
 }

@@ -52,19 +52,20 @@ pub trait Light: Send + Sync {
     }
 
     /// Returns how the light is spread out, if it is neither a point nor a ball. Its samples then determine the light
-    /// that it adds, and [`emissivity`](Self::emissivity) is its radiance; [`brightest`](Self::brightest) bounds
-    /// `light` of each sample times the cosine of the angle at which it arrives, and if it has highlights, without the
-    /// cosine.
+    /// that it adds, and [`emissivity`](Self::emissivity) is its radiance. [`brightest`](Self::brightest) bounds
+    /// `light` of each sample times the cosine of the angle at which it arrives, or, if the light has highlights,
+    /// without the cosine.
     fn emitter(&self) -> Option<&dyn Emitter> {
         None
     }
 
-    /// Tells whether the light comes from infinitely far away, so that its [`location`](Self::location) means nothing.
+    /// Tells whether the light comes from infinitely far away. Its [`location`](Self::location) then means nothing.
     fn is_far(&self) -> bool {
         false
     }
 
-    /// Returns the shape as which the light is seen, as bright as its emissivity; `None` for a light that is not seen itself.
+    /// Returns the visible shape of the light, as bright as its emissivity; `None` for a light that is not visible
+    /// itself.
     fn shape(&self) -> Option<AnyShape> {
         None
     }

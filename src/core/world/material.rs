@@ -42,7 +42,7 @@ impl Material {
         self.interface.is_some() && self.transparency != 0.0 && self.shininess != 0.0
     }
 
-    /// Returns what absorbs light behind the surface, if anything does.
+    /// Returns the medium that absorbs light behind the surface, if there is one.
     pub(crate) fn medium(&self) -> Option<Medium> {
         self.interface.as_ref().and_then(|interface| interface.medium())
     }

@@ -1,4 +1,4 @@
-//! What a scene is made of: the traits of shapes, shaders, lights, backgrounds and cameras, and the types in their
+//! The parts of a scene: the traits of shapes, shaders, lights, backgrounds and cameras, and the types in their
 //! signatures.
 
 pub mod accuracy;

@@ -1,4 +1,4 @@
-//! Flat panels that shine: rectangles and discs, and which of their points are seen.
+//! Flat panels that shine: rectangles and discs, and the points of them that are seen.
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_4, PI};
@@ -38,11 +38,12 @@ impl Panel {
         if self.is_round { 4.0 * self.radius() } else { 32.0 * self.radius() }
     }
 
-    /// Chooses a point as seen from a place by two numbers from 0 to 1: by solid angle, or from afar, where that is nearly
-    /// the same, by area. Near a disc, it is chosen in the square around it; `None` beside it.
+    /// Chooses a point as seen from a place by two numbers from 0 to 1: by solid angle, or, from afar, where that is
+    /// nearly the same, by area. Near a disc, the point is chosen in the square around it; `None` if it lies beside
+    /// the disc.
     ///
-    /// Returns the vector to the point, in world units, and the reciprocal of the density per unit of solid angle, which is at
-    /// most 2 pi.
+    /// Returns the vector to the point, in world units, and the reciprocal of the density per unit of solid angle,
+    /// which is at most 2 pi.
     pub fn sample(&self, at: DVec3, numbers: DVec2) -> Option<(DVec3, f64)> {
         let (between, half) = (self.middle - at, self.half);
         if between.length() > self.far() {
@@ -58,8 +59,8 @@ impl Panel {
     }
 }
 
-/// Maps two numbers from 0 to 1 to the unit disc, with areas in proportion (Shirley and Chiu, "A Low Distortion Map Between
-/// Disk and Square", 1997).
+/// Maps two numbers from 0 to 1 to the unit disc, with areas in proportion (Shirley and Chiu, "A Low Distortion Map
+/// Between Disk and Square", 1997).
 pub fn on_disc(numbers: DVec2) -> DVec2 {
     let DVec2 { x, y } = 2.0 * numbers - 1.0;
     let (radius, angle) = match x.abs() > y.abs() {
@@ -81,7 +82,7 @@ struct SphericalRectangle {
     from: DVec2,
     to: DVec2,
     plane: f64,
-    /// What the choice of a place needs, in the paper's words.
+    /// The constants for the choice of a place, with the paper's names.
     b: [f64; 2],
     k: f64,
     /// The solid angle that the rectangle covers, in steradians.
@@ -89,8 +90,8 @@ struct SphericalRectangle {
 }
 
 impl SphericalRectangle {
-    /// Looks at a rectangle from a point, `between` which and its middle there is this vector; `None` if the point lies in its
-    /// plane.
+    /// Returns a rectangle as seen from a point. `between` leads from the point to the rectangle's middle. `None` if
+    /// the point lies in the rectangle's plane.
     fn new(between: DVec3, half: [DVec3; 2]) -> Option<Self> {
         let [x_axis, y_axis] = half.map(DVec3::normalize);
         let z_axis = x_axis.cross(y_axis);
@@ -121,8 +122,8 @@ impl SphericalRectangle {
         })
     }
 
-    /// Chooses a point by two numbers from 0 to 1, with the same density everywhere as seen from the point; returns the
-    /// vector to it, in world units.
+    /// Chooses a point of the rectangle by two numbers from 0 to 1, evenly by solid angle. Returns the vector to it,
+    /// in world units.
     fn place(&self, numbers: DVec2) -> DVec3 {
         let ([low, high], [x_axis, y_axis, z_axis]) = (self.b, self.axes);
         let (sin, cos) = libm::sincos(numbers.x * self.solid_angle + self.k);

@@ -10,12 +10,13 @@ use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 
-/// The window through which a sample looks: its width in world units, at the start of its ray and for each unit of the way.
+/// The width of the window through which a sample looks, in world units: at the start of its ray, and for each unit
+/// of its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// The width at the start.
     pub start: f64,
-    /// The width that is added for each unit of the way.
+    /// The width that is added for each unit of the path.
     pub spread: f64,
     /// The width of a pixel, in widths of the window.
     pub pixel: f64,
@@ -24,7 +25,7 @@ pub struct Window {
 /// The least cosine of the angle at which a patch is seen. At smaller cosines, patches are as long as at this one.
 pub(crate) const LEAST_COSINE: f64 = 1e-6;
 
-/// More than the rounding errors of a mean over a patch, as a fraction of the averaged values.
+/// An upper limit on the rounding errors of a mean over a patch, as a fraction of the averaged values.
 pub(crate) const MEAN_ROUNDING: f64 = 1e-7;
 
 /// A part of a surface around a point: a parallelogram that touches the surface there.
@@ -32,7 +33,7 @@ pub(crate) const MEAN_ROUNDING: f64 = 1e-7;
 pub struct Patch {
     /// Its sides, in world units.
     pub sides: [DVec3; 2],
-    /// How many times as wide as the patch what a pixel shows is.
+    /// The width that a pixel shows, in widths of the patch.
     pub pixel: f64,
     /// The least and the greatest u and v; `None` where the shape has none, or the shader does not see them. They may lie
     /// beyond the ends of the surface.
@@ -40,8 +41,8 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Returns the patch that a ray shows through a window of this width, given its unit direction and the unit normal,
-    /// where a pixel is so many times as wide.
+    /// Returns the patch that a ray shows, given its unit direction, the unit normal, the width of its window, and
+    /// the width of a pixel in widths of the window.
     pub(crate) fn seen(dir: DVec3, normal: DVec3, (width, pixel): (f64, f64)) -> Self {
         let cosine = dir.dot(normal);
         let along =
@@ -56,7 +57,7 @@ impl Patch {
         let mut ends = [uv; 2];
         for corner in [one + other, one - other, other - one, -one - other] {
             let Some(at) = shape.uv(middle + corner) else { return };
-            // What grows beyond 1 begins at 0 again.
+            // A coordinate that grows beyond 1 begins at 0 again.
             let off = at - uv;
             let at = uv + (off - off.round());
             ends = [ends[0].min(at), ends[1].max(at)];
@@ -64,7 +65,7 @@ impl Patch {
         self.uv = Some(ends);
     }
 
-    /// Returns how far the patch reaches along a unit vector, from one end to the other.
+    /// Returns the length of the patch along a unit vector.
     pub fn extent(&self, along: DVec3) -> f64 {
         self.sides[0].dot(along).abs() + self.sides[1].dot(along).abs()
     }
@@ -82,8 +83,8 @@ pub struct PatchBounds<F> {
 }
 
 impl<F: Float> PatchBounds<F> {
-    /// Encloses the patch that [`Patch::seen`] returns, before any rounding; `None` where its sides are open, as where the
-    /// surface faces the ray.
+    /// Encloses the patch that [`Patch::seen`] returns, before any rounding; `None` where its sides are open, as
+    /// where the surface faces the ray.
     pub(crate) fn seen(
         middle: [Interval<F>; 3],
         dir: [Interval<F>; 3],
@@ -102,8 +103,8 @@ impl<F: Float> PatchBounds<F> {
         Some(Self { middle, sides: [along.map(|axis| long * axis), across], uv: None })
     }
 
-    /// Encloses u and v at the corners of the patch, given u and v in the middle, as [`Patch::find_uv`] finds them,
-    /// given a function that encloses those of a point.
+    /// Encloses u and v at the corners of the patch, as [`Patch::find_uv`] finds them, given u and v in the middle,
+    /// and a function that encloses those of a point.
     pub(crate) fn find_uv(
         &mut self,
         uv: [Interval; 2],
@@ -113,7 +114,7 @@ impl<F: Float> PatchBounds<F> {
         let corner = |along: f64, across: f64| {
             let [along, across] = [along, across].map(|sign| half * Interval::constant(sign));
             let at = of(per_axis(|axis| middle[axis] + along * one[axis] + across * other[axis]))?;
-            // What grows beyond 1 begins at 0 again.
+            // A coordinate that grows beyond 1 begins at 0 again.
             let near = |axis: usize| {
                 let off = at[axis] - uv[axis];
                 let turns = (off + Interval::constant(0.5)).certain_floor()?;
@@ -134,15 +135,15 @@ impl<F: Float> PatchBounds<F> {
         self.uv = Some(ends);
     }
 
-    /// Returns how far the patch reaches along two directions, from one end to the other, given a function that returns the
-    /// parts of a vector along them.
+    /// Returns the lengths of the patch along two directions, given a function that returns the parts of a vector
+    /// along them.
     pub fn widths(&self, along: impl Fn([Interval<F>; 3]) -> [Interval<F>; 2]) -> [Interval<F>; 2] {
         let [one, other] = self.sides.map(|side| along(side).map(Scalar::abs));
         [one[0] + other[0], one[1] + other[1]]
     }
 }
 
-/// Tells whether a square or a tile is odd, given its two whole numbers. In a row, every other square is odd. A square
+/// Tells whether a square or a tile is odd, given its two integers. In a row, every other square is odd. A square
 /// whose number is NaN counts as odd.
 #[inline(always)]
 pub fn is_odd(square: DVec2) -> bool {
@@ -164,7 +165,7 @@ pub fn odd_part_bounds<F: Float>(middle: [Interval<F>; 2], widths: [Interval<F>;
     half - half * balance(0) * balance(1)
 }
 
-/// Returns a colour between two others, or one of them: whatever rounding does, no channel lies beyond both.
+/// Returns a colour between two others, or one of them. Rounding does not move a channel beyond both.
 pub fn between(one: Rgb, other: Rgb, part: f64) -> Rgb {
     one.lerp(other, part).clamp(one.min(other), one.max(other))
 }
@@ -202,11 +203,11 @@ fn balance_bounds<F: Float>(middle: Interval<F>, width: Interval<F>) -> Interval
 /// Encloses the distance to the nearest even number, which is the integral of the wave of [`balance`].
 fn triangle<F: Float>(at: Interval<F>) -> Interval<F> {
     let n = Interval::<F>::constant;
-    // A whole number of periods is left out, whichever: the rest is from 0 to 2, or a little beyond.
+    // Any whole number of periods may be left out: the rest is from 0 to 2, or a little beyond.
     let periods = (0.5 * at.coarse().middle()).floor();
     let rest = at - n(2.0 * periods);
     let folded = (n(1.0) - (rest - n(1.0)).abs()).abs();
-    // Beyond two more periods it is not known as a sum of two bends.
+    // The two folds hold only from -1 to 3.
     if rest.low >= F::of(-1.0) && rest.high <= F::of(3.0) { folded } else { n(0.0).hull(n(1.0)) }
 }
 

@@ -62,7 +62,7 @@ impl Camera for Pinhole {
         });
         let corner = |x: f64, y: f64| (DVec3::new(x * size.x, y * size.y, 0.0) - apex).normalize();
         let dirs = [corner(x[0], y[0]), corner(x[1], y[0]), corner(x[1], y[1]), corner(x[0], y[1])];
-        // Within half of space.
+        // Within a half-space.
         dirs.iter().all(|dir| dir.is_finite() && -dir.z * apex.z.signum() > 1e-6).then_some(dirs)
     }
 
@@ -90,8 +90,8 @@ impl Camera for Pinhole {
     }
 }
 
-/// Returns an image position and the position of the last pixel, whose quotient is a fraction of the image plane's width
-/// and height. A single pixel looks through the middle.
+/// Returns an image position and the position of the last pixel. Their quotient is a fraction of the image plane's
+/// width and height. A single pixel looks through the middle.
 #[inline(always)]
 fn place(at: &ImagePoint) -> (DVec2, DVec2) {
     let part = |at: f64, pixels: usize| if pixels > 1 { (at, (pixels - 1) as f64) } else { (1.0, 2.0) };

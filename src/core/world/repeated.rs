@@ -19,8 +19,9 @@ impl Texture {
         row(0.0).lerp(row(1.0), part.y)
     }
 
-    /// Encloses the blends of the four texels around the places in a box, which are given as those of
-    /// [`blended`](Self::blended). `texel` returns the texel of any column and row. `None` if the box reaches over many.
+    /// Encloses the blends of the four texels around the places in a box, which are given as in
+    /// [`blended`](Self::blended). `texel` returns the texel of any column and row. `None` if the box covers many
+    /// texels.
     pub fn enclose_blended<F: Float>(
         &self,
         place: [Interval; 2],
@@ -38,7 +39,7 @@ impl Texture {
             let row = |y: f64| blend(texel(x, y), texel(x + 1.0, y), part(place[0], x));
             return Some(blend(row(y), row(y + 1.0), part(place[1], y)));
         }
-        // Blends lie among the texels around.
+        // Blends lie between the texels around.
         let are_few = |[low, high]: [f64; 2]| high - low < MOST_TEXELS as f64;
         let all = |[low, high]: [f64; 2]| (0..=(high - low) as u32 + 1).map(move |at| low + f64::from(at));
         let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
@@ -48,9 +49,9 @@ impl Texture {
         around.flat_map(|y| all(columns).map(move |x| [x, y])).map(|[x, y]| texel(x, y)).reduce(hull)
     }
 
-    /// Encloses what [`mean_repeated`](Self::mean_repeated) returns for rectangles whose corners are enclosed; `None`
-    /// where one may be empty. Where the corners are nearly known, the mean is known up to the light of the texels near
-    /// the edges.
+    /// Encloses the means of [`mean_repeated`](Self::mean_repeated) over rectangles whose corners are enclosed;
+    /// `None` where a rectangle may be empty. Where the corners are nearly known, the mean is known up to the light
+    /// of the texels near the edges.
     pub fn enclose_mean_repeated<F: Float>(
         &self,
         [low, high]: [[Interval; 2]; 2],
@@ -76,7 +77,7 @@ impl Texture {
     /// repeats beyond its edges.
     pub fn mean_repeated(&self, low: DVec2, high: DVec2) -> Rgb {
         let size = DVec2::from(self.size().map(f64::from));
-        // Two runs of texels in one repetition, and their parts of the whole: what reaches beyond the end begins again.
+        // Two runs of texels in one repetition, and their parts of the whole: the part beyond the end begins again.
         let runs = |axis: usize| {
             let (size, width) = (size[axis], high[axis] - low[axis]);
             if width >= size {

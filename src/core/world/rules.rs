@@ -1,4 +1,4 @@
-//! The rules of light, in any type of numbers: the numbers of images, and numbers that enclose what images should show.
+//! The rules of light, in any type of numbers: the numbers of images, and numbers that enclose them.
 //!
 //! A ray that hits a point returns the point's own light, which is its ambient light and the light of each lamp, and
 //! the light that is seen through the point and mirrored in it. Under the notes' rules, the own light is divided by the
@@ -22,7 +22,7 @@ pub enum Rules {
 }
 
 impl Rules {
-    /// Returns a surface's own light as a ray returns it, or a bound on that, from the length of the path.
+    /// Returns a surface's own light, or a bound on it, as a ray of this path length returns it.
     #[inline(always)]
     pub fn after<N: Scalar>(self, travelled: N, light: N) -> N {
         match self {
@@ -31,8 +31,8 @@ impl Rules {
         }
     }
 
-    /// Returns a bound on light that is known as a bound on the light times the length of its path under the notes'
-    /// rules, and on the light itself by the free ones.
+    /// Returns a bound on light. `most` bounds the light times the length of its path under the notes' rules, and the
+    /// light itself under the free rules.
     #[inline]
     pub fn over_path(self, most: f64, travelled: f64) -> f64 {
         match self {
@@ -60,7 +60,7 @@ pub enum Falloff {
     None,
     /// In proportion to the reciprocal of the distance.
     Distance,
-    /// In proportion to the reciprocal of its square, as that of a real lamp.
+    /// In proportion to the reciprocal of the squared distance, as that of a real lamp.
     Square,
 }
 
@@ -74,7 +74,7 @@ pub struct Fading {
 }
 
 impl Fading {
-    /// The fraction of [`at`](Self::at) below which no distance counts, so that light is bounded.
+    /// The fraction of [`at`](Self::at) up to which all distances count as the same, which keeps light bounded.
     const NEAREST: f64 = 0.01;
 
     /// No falloff.
@@ -94,7 +94,7 @@ impl Fading {
 /// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
 pub const MAX_DIST: f64 = 20.0;
 
-/// Returns how much of the longest path of the notes' rules is left: a ray is followed unless it is below 0.
+/// Returns the rest of the longest path under the notes' rules. A ray is followed unless the rest is below 0.
 #[inline(always)]
 pub fn path_left<N: Scalar>(travelled: N) -> N {
     N::constant(MAX_DIST) - travelled
@@ -119,7 +119,7 @@ pub fn reflected<C: Mul<Output = C> + Add<Output = C>>(own: C, seen: C, specular
     own + specular * seen
 }
 
-/// Returns the direction in which a direction is mirrored, as long as it, given a unit normal.
+/// Mirrors a direction, given a unit normal. Its length does not change.
 #[inline(always)]
 pub fn mirrored<N: Scalar>(dir: [N; 3], normal: [N; 3]) -> [N; 3] {
     let across = dir[0] * normal[0] + dir[1] * normal[1] + dir[2] * normal[2];

@@ -91,8 +91,8 @@ impl Sample {
     }
 }
 
-/// Returns the number by which the seeds of a purpose differ from those of others. Purposes differ in their seed, not in
-/// their dimension, so that any number of lights has a sequence.
+/// Returns the number by which the seeds of a purpose differ from those of others. Purposes differ in their seed, not
+/// in their dimension, so there are sequences for any number of lights.
 fn salt(purpose: u32) -> u32 {
     purpose.wrapping_mul(0x9e37_79b9)
 }
@@ -184,18 +184,18 @@ pub(crate) fn jitters(cpu: Cpu, samples: &Samples, x: &mut [f64], y: &mut [f64])
     }
 }
 
-/// Writes what [`on_light`](Sample::on_light) returns for each sample to `x` and `y`.
+/// Writes the result of [`on_light`](Sample::on_light) for each sample to `x` and `y`.
 pub(crate) fn on_lights(cpu: Cpu, samples: &Samples, light: usize, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, on_light(light), x, y);
 }
 
-/// Writes what [`on_lens`](Sample::on_lens) returns for each sample to `x` and `y`.
+/// Writes the result of [`on_lens`](Sample::on_lens) for each sample to `x` and `y`.
 pub(crate) fn on_lenses(cpu: Cpu, samples: &Samples, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, ON_LENS, x, y);
     on_discs(cpu, x, y);
 }
 
-/// Writes the point of the lens's rim at a fraction of a turn, for each.
+/// Writes a point of the lens's rim for each fraction of a turn.
 pub(crate) fn on_rim(turns: impl Iterator<Item = f64>, x: &mut [f64], y: &mut [f64]) {
     for ((turn, x), y) in turns.zip(x).zip(y) {
         DVec2 { x: *x, y: *y } = on_disc(DVec2::new(1.0, turn));
@@ -203,7 +203,7 @@ pub(crate) fn on_rim(turns: impl Iterator<Item = f64>, x: &mut [f64], y: &mut [f
 }
 
 /// Writes the numbers that [`Sample::draw`] returns for each sample.
-// It stays off the stacks of deep reflections.
+// Not inlined, so it stays off the stacks of deep reflections.
 #[inline(never)]
 fn draw(cpu: Cpu, samples: &Samples, purpose: u32, x: &mut [f64], y: &mut [f64]) {
     let Samples { sampler, index, pixel } = samples;
@@ -252,8 +252,8 @@ kernels! {
         }
     }
 
-    /// Replaces pairs of numbers from 0 to 1 by the distance from the middle of the unit disc at which the point lies
-    /// that they choose, and by the cosine of its angle. Writes the sine of that to `sin`.
+    /// Replaces pairs of numbers from 0 to 1, which choose points of the unit disc, by the points' distances from the
+    /// middle and the cosines of their angles. Writes the sines to `sin`.
     pub(crate) fn to_polar(x: &mut [f64], y: &mut [f64], sin: &mut [f64]) {
         let count = x.len();
         let (y, sin) = (&mut y[..count], &mut sin[..count]);

@@ -1,4 +1,4 @@
-//! The sensor: what a camera's image is recorded on, and from a pixel to its primary rays.
+//! The sensor: it records a camera's image, and finds the primary rays of a pixel.
 
 use crate::geometry::image_point::ImagePoint;
 use crate::geometry::ray::Ray;
@@ -22,7 +22,7 @@ pub type AnyCamera = Arc<dyn PacketCamera>;
 /// The sensor of a camera: the image's size, its samples and its exposure, and the camera that projects onto it.
 #[derive(Clone, Debug)]
 pub struct Sensor {
-    /// The camera itself: which ray is seen at each place of the image.
+    /// The camera itself: which ray belongs to each place of the image.
     pub camera: AnyCamera,
     /// The image's width and height in pixels.
     pub pixels: [usize; 2],
@@ -30,14 +30,14 @@ pub struct Sensor {
     pub samples: u32,
     /// The rule by which a pixel takes more primary rays than `samples`; `None` if all take the same number.
     pub adaptive: Option<Adaptive>,
-    /// Whether pixels whose colours are proven to be within the error that adaptive sampling allows take no primary rays.
+    /// Whether pixels take no primary rays if their colours are proven to be within the error of adaptive sampling.
     pub certain: bool,
     /// The distribution of the rays within a pixel, if there is more than one.
     pub sampler: Sampler,
     /// A number that scrambles the samplers' sequences together with the pixel: 0 in a render, and another one for the
     /// same image with independent samples.
     pub scramble: u32,
-    /// The exposure in stops: what is shown is multiplied by 2 to this power.
+    /// The exposure in stops: shown light is multiplied by 2 to this power.
     pub exposure: f64,
     /// How light above white is shown, under the free rules.
     pub tone: Tone,
@@ -56,14 +56,14 @@ impl Default for Sensor {
     }
 }
 
-/// How many primary rays a pixel takes in adaptive sampling: [`Sensor::samples`], and then twice as many again and again,
-/// each time the next ones of the sampler's sequence, until its estimated error is small enough.
+/// The number of primary rays of a pixel in adaptive sampling: [`Sensor::samples`], doubled again and again with the
+/// next samples of the sampler's sequence, until the pixel's estimated error is small enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive {
     /// The maximum number of primary rays per pixel: [`Sensor::samples`] times a power of two.
     pub most: u32,
-    /// The error of a pixel's colour, where 1 is white, at which its estimate must arrive; `None` if the samples are to
-    /// lower the error of the whole image.
+    /// The limit on a pixel's estimated error, where 1 is white; `None` if the samples are to lower the error of the
+    /// whole image.
     pub error: Option<f64>,
 }
 
@@ -203,18 +203,18 @@ impl Sensor {
         self.camera.ray(&self.point(x, y), DVec2::ZERO)
     }
 
-    /// Returns the ray that [`ray`](Self::ray) returns, before anything is rounded.
+    /// Returns the unrounded ray of [`ray`](Self::ray).
     pub fn sight(&self, x: f64, y: f64) -> Sight {
         self.sight_through(x, y, DVec2::ZERO)
     }
 
-    /// Returns the ray through an image position, in pixels, and a point of the lens, in units of its radius, before
-    /// anything is rounded.
+    /// Returns the unrounded ray through an image position, in pixels, and a point of the lens, in units of its
+    /// radius.
     pub(crate) fn sight_through(&self, x: f64, y: f64, lens: DVec2) -> Sight {
         self.camera.sight(&self.point(x, y), lens)
     }
 
-    /// Returns the ray of a sample at an image position, in pixels, before anything is rounded.
+    /// Returns the unrounded ray of a sample at an image position, in pixels.
     pub fn sight_of(&self, place: DVec2, sample: Option<&Sample>) -> Sight {
         let sample = sample.filter(|_| self.camera.has_lens());
         self.sight_through(place.x, place.y, sample.map_or(DVec2::ZERO, Sample::on_lens))

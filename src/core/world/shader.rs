@@ -23,7 +23,7 @@ pub struct Anchor {
 ///
 /// The defaults are the material's, as in the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
 pub trait Shader: Send + Sync {
-    /// Tells what the shader sees of a point besides its position. The answer is the same in every call.
+    /// Tells which properties of a point the shader sees besides its position. The answer is the same in every call.
     #[inline(always)]
     fn sees(&self) -> ShaderInputs {
         ShaderInputs::POSITION
@@ -53,9 +53,9 @@ pub trait Shader: Send + Sync {
         false
     }
 
-    /// Returns the outward unit normal with which a point is shaded, if the shader [bends](Self::bends) normals; then it
-    /// [sees](Self::sees) them. Lights and mirrors use it. The surface stays as it is: light from behind it does not reach
-    /// it, and rays leave it on the side that they hit.
+    /// Returns the outward unit normal with which a point is shaded, if the shader [bends](Self::bends) normals; such
+    /// a shader [sees](Self::sees) them. Lights and mirrors use the bent normal. The surface itself stays as it is:
+    /// light from behind does not reach it, and rays leave it on the side that they hit.
     #[inline]
     fn bend(&self, at: &SurfacePoint) -> DVec3 {
         at.normal
@@ -67,14 +67,15 @@ pub trait Shader: Send + Sync {
         false
     }
 
-    /// Tells whether the surface is not there at a point, if the shader [cuts parts out](Self::cuts_out): rays pass.
+    /// Tells whether a point is cut out, if the shader [cuts parts out](Self::cuts_out). Rays pass through it.
     #[inline]
     fn is_cut_out(&self, _at: &SurfacePoint) -> bool {
         false
     }
 
-    /// Encloses the unit normals to which the shader of [`colours`](Self::colours) bends these outward normals, before
-    /// any rounding, at every point of a box; `None` where the bent normals are not known. `None` is always correct.
+    /// Encloses the unit normals that the shader makes of these outward ones, which the shader of
+    /// [`colours`](Self::colours) has already bent, before any rounding, at every point of a box; `None` where the
+    /// bent normals are not known. `None` is always correct.
     fn enclose_bend<F: Precise>(
         &self,
         _at: &PointBounds<F>,
@@ -86,7 +87,7 @@ pub trait Shader: Send + Sync {
         None
     }
 
-    /// Returns the shader that gives the colours and the normals that are bent, if the shader does nothing but bend normals.
+    /// Returns the shader that gives the colours, and the normals to bend, if this shader only bends normals.
     fn colours(&self) -> Option<&(dyn EnclosedShader + 'static)> {
         None
     }
@@ -106,9 +107,9 @@ pub trait Shader: Send + Sync {
         self.uniform(material).map(LookBounds::from)
     }
 
-    /// Returns the tile or the texel at a point, as two whole numbers that differ from those of its neighbours.
-    /// Adaptive sampling takes more samples between points on different tiles than their colours alone would suggest.
-    /// Two zeros everywhere are correct.
+    /// Returns the tile or the texel at a point, as two integers that differ from those of its neighbours. Adaptive
+    /// sampling takes more samples between points on different tiles than their colours alone would suggest. Two
+    /// zeros everywhere are correct.
     #[inline]
     fn tile(&self, _at: &SurfacePoint) -> DVec2 {
         DVec2::ZERO
@@ -133,7 +134,7 @@ pub struct LookBounds<F> {
     pub specular: [Interval<F>; 3],
 }
 
-/// Takes the reflectivities for exact.
+/// Takes the reflectivities as exact.
 impl<F: Float> From<Look> for LookBounds<F> {
     fn from(Look { ambient, diffuse, specular }: Look) -> Self {
         let exactly = |colour: Rgb| per_axis(|channel| Interval::constant(colour[channel]));
@@ -149,7 +150,7 @@ impl<F: Float> From<&Material> for LookBounds<F> {
 }
 
 impl<F: Float> LookBounds<F> {
-    /// Returns the bounds of means of both, where the other has this part.
+    /// Returns the bounds of weighted means of both. `part` is the weight of the other.
     pub fn mean(&self, other: &Self, part: Interval<F>) -> Self {
         let either = self.hull(other);
         let mean = |one: [Interval<F>; 3], other: [Interval<F>; 3], either: [Interval<F>; 3]| {

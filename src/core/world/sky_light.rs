@@ -12,15 +12,15 @@ use std::sync::{Arc, OnceLock};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// The light of a background. Directions are chosen by the cosine of the angle at which light arrives; where the background
-/// has detail, half of them by how bright it is there.
+/// The light of a background. Directions are chosen by the cosine of the angle at which light arrives. Where the
+/// background has detail, half of them are chosen by its brightness.
 pub struct SkyLight {
     background: Arc<dyn Background>,
     map: OnceLock<Option<SkyMap>>,
 }
 
 impl SkyLight {
-    /// Makes the light of a background, which is looked at when it first lights a surface.
+    /// Makes the light of a background, which is examined when it first lights a surface.
     pub fn new(background: Arc<dyn Background>) -> Self {
         Self { background, map: OnceLock::new() }
     }
@@ -48,7 +48,7 @@ impl Light for SkyLight {
         Some(per_axis(|channel| Interval::constant(0.0).hull(Interval::constant(most[channel]))))
     }
 
-    /// The density of directions is at least half of that by the cosine.
+    /// The density of directions is at least half of the cosine density.
     fn brightest(&self) -> Option<Rgb> {
         Some(2.0 * self.background.brightest())
     }
@@ -66,7 +66,7 @@ impl Emitter for SkyLight {
             let light = self.background.colour(toward) / cosine;
             return (cosine > 0.0).then_some(LightSample { toward, distance: f64::INFINITY, light });
         };
-        // The middle of the numbers chooses by the cosine, so that a single sample is the most even one.
+        // The middle of the range chooses by the cosine, so a single sample is the most even one.
         let DVec2 { x, y } = numbers;
         let toward = match x {
             x if (0.25..0.75).contains(&x) => by_cosine(normal, DVec2::new(2.0 * (x - 0.25), y)),

@@ -1,4 +1,4 @@
-//! How bright a background is around the scene.
+//! The brightness of a background around the scene.
 
 use crate::parallel;
 use crate::world::background::Background;
@@ -10,16 +10,16 @@ use tabray_exact::scalar::Scalar;
 /// The largest number of columns, and of rows, of a [`SkyMap`].
 const MOST_CELLS: [u32; 2] = [1024, 512];
 
-/// The largest number of cells along each side of a texel. Of colours that are interpolated between the middles of texels, the
-/// brightest part of a lone bright texel is 16 times as bright as the corner to which its light reaches: one cell for all of
-/// it would choose directions by a density from which the light differs as much.
+/// The largest number of cells along each side of a texel. If colours are interpolated between the middles of texels,
+/// the brightest part of a lone bright texel is 16 times as bright as the corner to which its light reaches. With one
+/// cell for all of it, the light would differ as much from the density by which directions are chosen.
 const FINEST: usize = 4;
 
-/// The number of rows of a map from which on they are filled on all threads.
+/// The minimum number of rows of a map that are filled on all threads.
 const MANY: usize = 64;
 
-/// How bright a background is around the scene: cells of an equirectangular map, whose middle lies toward -z and whose upper
-/// edge is straight up.
+/// The brightness of a background around the scene: cells of an equirectangular map, whose middle lies toward -z and
+/// whose upper edge is straight up.
 pub struct SkyMap {
     columns: usize,
     rows: usize,
@@ -30,7 +30,7 @@ pub struct SkyMap {
 }
 
 impl SkyMap {
-    /// Looks at a background; `None` if it has no detail, or is black.
+    /// Makes the map of a background; `None` if it has no detail, or is black.
     pub(super) fn of(background: &dyn Background) -> Option<Self> {
         let [width, height] = background.detail()?;
         if width == 0 || height == 0 {
@@ -147,8 +147,8 @@ fn band(row: usize, rows: usize) -> f64 {
     sine(row + 1, rows) - sine(row, rows)
 }
 
-/// Encloses the places of directions in an equirectangular map whose middle lies toward -z, in its width from the left and its
-/// height from below. The directions are unit vectors in a box.
+/// Encloses the places of directions in an equirectangular map whose middle lies toward -z, in its width from the
+/// left and its height from below. The directions are unit vectors in a box.
 pub fn equirectangular([x, y, z]: [Interval; 3]) -> [Interval; 2] {
     let (n, pi) = (Interval::constant, Interval::pi());
     [n(0.5) + x.atan2(-z) / (n(2.0) * pi), n(1.0) - y.acos() / pi]
@@ -161,7 +161,7 @@ fn direction(place: DVec2) -> DVec3 {
     DVec3::new(flat * sin, height, -flat * cos)
 }
 
-/// Returns the place in a list of ascending numbers up to 1 that a number from 0 to 1 chooses, and how far the number
+/// Returns the index that a number from 0 to 1 chooses in a list of ascending numbers up to 1, and how far the number
 /// is past the entry before, as a fraction of the difference.
 fn chosen(up_to: &[f64], number: f64) -> (usize, f64) {
     let index = up_to.partition_point(|end| *end <= number).min(up_to.len() - 1);

@@ -3,7 +3,7 @@
 use crate::geometry::aabb::Aabb;
 use std::sync::Arc;
 
-/// A way in which solids are combined.
+/// A way to combine solids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// The points in any of the solids.
@@ -14,7 +14,7 @@ pub enum Operation {
     Difference,
 }
 
-/// A condition on the parts that a point lies in, which are given by their indices.
+/// A condition on the parts in which a point lies. Parts are given by their indices.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tree {
     /// Holds everywhere (true) or nowhere (false).

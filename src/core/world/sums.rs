@@ -46,7 +46,7 @@ impl Sums {
         (sum / (high - low).element_product()).clamp(Rgb::ZERO, Rgb::splat(self.brightest))
     }
 
-    /// Returns the sum over all to the left of a point and below it, with parts of texels.
+    /// Returns the sum over all texels, and parts of texels, to the left of a point and below it.
     fn up_to(&self, x: f64, y: f64) -> Rgb {
         let [column, row] = [x, y].map(|along| along.floor());
         let (right, above) = (x - column, y - row);

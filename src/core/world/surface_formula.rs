@@ -1,4 +1,4 @@
-//! What formulas of a surface read of its points.
+//! The properties of points that formulas of a surface read.
 
 use crate::world::certify::Precise;
 use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
@@ -15,7 +15,7 @@ const NORMAL: Range<usize> = 5..8;
 const CURVATURE: Range<usize> = 8..COUNT;
 
 impl ShaderInputs {
-    /// Returns what a formula of a surface reads of a point.
+    /// Returns the properties of a point that a formula of a surface reads.
     pub fn of(formula: &SurfaceField) -> Self {
         let reads = |mut variables: Range<usize>| variables.any(|variable| formula.uses(variable));
         Self { uv: reads(UV), normal: reads(NORMAL), curvature: reads(CURVATURE), ..Self::POSITION }
@@ -23,7 +23,7 @@ impl ShaderInputs {
 }
 
 impl SurfacePoint {
-    /// Returns the variables of formulas at the point; 0 for what it does not have, or its shader does not see.
+    /// Returns the variables of formulas at the point; 0 for those that it does not have, or its shader does not see.
     pub fn variables(&self) -> [f64; COUNT] {
         let ([x, y, z], [nx, ny, nz]) = (self.position.to_array(), self.normal.to_array());
         let [u, v] = self.uv.unwrap_or_default().to_array();
@@ -33,7 +33,7 @@ impl SurfacePoint {
 }
 
 impl<F: Precise> PointBounds<F> {
-    /// Encloses a formula at the points; `None` where what it reads is not known.
+    /// Encloses a formula at the points; `None` where a variable that it reads is not known.
     pub fn value(&self, formula: &SurfaceField) -> Option<Interval<F>> {
         let sees = ShaderInputs::of(formula);
         if sees.curvature || !formula.is_enclosed() {

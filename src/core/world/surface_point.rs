@@ -22,13 +22,13 @@ pub struct SurfacePoint {
     pub uv: Option<DVec2>,
     /// The index of the face, from 0; `None` where the shape has none, or the shader does not see it.
     pub face: Option<u32>,
-    /// The unit directions along the surface in which u and v grow; `None` where the shape has no u and v, or the shader does
-    /// not see these directions.
+    /// The unit directions along the surface in which u and v grow; `None` where the shape has no u and v, or the
+    /// shader does not see these directions.
     pub tangents: Option<[DVec3; 2]>,
-    /// How the surface bends at the point; `None` where it has no formula, or the shader does not see it.
+    /// The curvature of the surface at the point; `None` where it has no formula, or the shader does not see it.
     pub curvature: Option<Curvature>,
-    /// The part of the surface around the point over which the shader takes the mean of its pattern; `None` where the pattern
-    /// shows as it is at the point, or the shader does not see the patch.
+    /// The part of the surface around the point over which the shader takes the mean of its pattern; `None` where the
+    /// pattern shows as it is at the point, or the shader does not see the patch.
     pub patch: Option<Patch>,
 }
 
@@ -48,7 +48,7 @@ impl SurfacePoint {
         }
     }
 
-    /// Returns a point of a shape with what a shader sees of it. `normal` is the outward one.
+    /// Returns a point of a shape with the properties that a shader sees. `normal` is the outward one.
     pub fn seen(
         shape: &dyn Hittable,
         sees: ShaderInputs,
@@ -74,11 +74,12 @@ pub(crate) fn size_of(shape: &dyn Hittable, distance: impl FnOnce() -> f64) -> f
     shape.facts().bounds.map_or_else(distance, |Aabb { low, high }| (high - low).length())
 }
 
-/// Returns the unit directions along a surface in which u and v grow; `None` where it has no u and v, or they do not change.
+/// Returns the unit directions along a surface in which u and v grow; `None` where it has no u and v, or they do not
+/// change.
 fn tangents(shape: &dyn Hittable, position: DVec3, normal: DVec3) -> Option<[DVec3; 2]> {
     let size = size_of(shape, || position.length());
     let (across, up) = normal.any_orthonormal_pair();
-    // What grows beyond 1 begins at 0 again.
+    // A coordinate that grows beyond 1 begins at 0 again.
     let wrapped = |difference: DVec2| difference - difference.round();
     let slopes = |dir: DVec3| {
         let at = |part: f64| shape.uv(position + part * NEAR * size * dir);
@@ -86,24 +87,24 @@ fn tangents(shape: &dyn Hittable, position: DVec3, normal: DVec3) -> Option<[DVe
     };
     let (right, above) = (slopes(across)?, slopes(up)?);
     let [u, v] = [right.x * across + above.x * up, right.y * across + above.y * up];
-    // Along one of them, the other does not change.
+    // Along one direction, the other coordinate does not change.
     let [along_u, along_v] = [v.cross(normal), normal.cross(u)];
     let turned = |along: DVec3, grows: DVec3| (along.dot(grows).signum() * along).try_normalize();
     Some([turned(along_u, u)?, turned(along_v, v)?])
 }
 
-/// The properties of a point that a shader needs beside its position. The others are not computed.
+/// The properties of a point that a shader needs besides its position. The others are not computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShaderInputs {
     /// Whether it sees the normal and the side.
     pub normal: bool,
     /// Whether it sees u and v.
     pub uv: bool,
-    /// Whether it sees which face the point lies on.
+    /// Whether it sees the face on which the point lies.
     pub face: bool,
-    /// Whether it sees in which directions u and v grow.
+    /// Whether it sees the directions in which u and v grow.
     pub tangents: bool,
-    /// Whether it sees how the surface bends.
+    /// Whether it sees the curvature.
     pub curvature: bool,
     /// Whether it sees the patch around the point.
     pub patch: bool,
@@ -123,7 +124,7 @@ impl ShaderInputs {
     /// The position, and the patch around it.
     pub const PATCH: Self = Self { patch: true, ..Self::POSITION };
 
-    /// Returns what one or the other sees.
+    /// Returns the properties that either sees.
     pub fn and(self, other: Self) -> Self {
         Self {
             normal: self.normal | other.normal,
@@ -156,8 +157,8 @@ pub struct PointBounds<F> {
     /// The patch over which the mean is shown, for all of these points; `None` where a point is shown, or the patch is
     /// not known.
     pub patch: Option<PatchBounds<F>>,
-    /// The unit directions along the surface in which u and v grow; `None` where they are not known, or the shader does not see
-    /// them.
+    /// The unit directions along the surface in which u and v grow; `None` where they are not known, or the shader
+    /// does not see them.
     pub tangents: Option<[[Interval<F>; 3]; 2]>,
 }
 

@@ -12,7 +12,7 @@ pub struct Texels {
     pixels: Pixels,
     /// The light of each byte.
     light: [f64; 256],
-    /// How far each texel is opaque, where any is not, if that is kept.
+    /// The opacity of each texel, where any is not opaque, if opacities are kept.
     alpha: Option<GrayImage>,
 }
 
@@ -30,7 +30,7 @@ impl Texels {
         Self { pixels: Pixels::Bytes(image), light, alpha }
     }
 
-    /// Makes texels of light. What is no number, or below 0, is 0.
+    /// Makes texels of light. NaN and numbers below 0 become 0.
     pub(super) fn of_light(mut image: Rgb32FImage, alpha: Option<GrayImage>) -> Self {
         image
             .iter_mut()
@@ -53,18 +53,19 @@ impl Texels {
         self.texel(column, row, |byte| self.light[usize::from(byte)])
     }
 
-    /// Returns a texel that stands for no light, as [`light`](Self::light) does: bytes from 0 to 1, whatever they would show.
+    /// Returns a texel that does not stand for light, otherwise as [`light`](Self::light) does. Bytes become numbers
+    /// from 0 to 1.
     pub fn numbers(&self, column: u32, row: u32) -> DVec3 {
         self.texel(column, row, |byte| f64::from(byte) / 255.0)
     }
 
-    /// Returns how far a texel is opaque, from 0 to 1, as [`light`](Self::light) does; 1 where that is not kept.
+    /// Returns the opacity of a texel, from 0 to 1, as [`light`](Self::light) does; 1 where opacities are not kept.
     pub fn alpha(&self, column: u32, row: u32) -> f64 {
         let (column, row) = self.place(column, row);
         self.alpha.as_ref().map_or(1.0, |alpha| f64::from(alpha.get_pixel(column, row).0[0]) / 255.0)
     }
 
-    /// Tells whether any texel is not opaque, and that is kept.
+    /// Tells whether any texel is not opaque, and opacities are kept.
     pub fn has_alpha(&self) -> bool {
         self.alpha.is_some()
     }
@@ -89,7 +90,7 @@ impl Texels {
     pub(super) fn mean_of_few(&self, low: DVec2, high: DVec2) -> Rgb {
         let cells = |from: f64, to: f64| {
             let cells = from.floor() as u32..=(to.ceil() as u32).max(from.floor() as u32 + 1) - 1;
-            // What has no width is where it begins.
+            // A range without width lies where it begins.
             let part = move |cell: u32| {
                 let at = f64::from(cell);
                 if to > from { (to.min(at + 1.0) - from.max(at)) / (to - from) } else { 1.0 }

@@ -14,10 +14,10 @@ use std::sync::OnceLock;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, constants, per_axis};
 
-/// The least opacity of a place of an image at which the surface is there, by default.
+/// The default opacity below which a place of an image is cut out.
 pub const CUTOFF: f64 = 0.5;
 
-/// The number of columns or rows from which on an enclosure no longer examines each texel.
+/// The maximum number of columns or rows whose texels an enclosure examines one by one.
 pub(super) const MOST_TEXELS: usize = 8;
 
 /// An image in a file. It is read once, when it is first needed.
@@ -29,7 +29,7 @@ pub struct Texture {
     /// Whether transparent texels show their colours as other texels do, and the opacity of each texel is kept.
     is_opaque: bool,
     cuts_out: bool,
-    /// How the image that is rendered shows light; unless that is known, under the notes' rules.
+    /// The display of the rendered image; that of the notes' rules unless it is set.
     display: OnceLock<Display>,
     picture: OnceLock<Result<Picture, String>>,
 }
@@ -43,7 +43,7 @@ struct Picture {
     remarks: Vec<&'static str>,
 }
 
-/// Textures are equal if their paths are, and both cut surfaces out or none does.
+/// Textures are equal if their paths are, and both cut surfaces out or neither does.
 impl PartialEq for Texture {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path && self.cuts_out == other.cuts_out
@@ -56,8 +56,8 @@ impl Texture {
         Self { path, ..Self::default() }
     }
 
-    /// Makes a texture of a model, which shows the colours of transparent texels as those of others. `contents` are those of the
-    /// image file, where they are not to be read from the path.
+    /// Makes a texture of a model, in which transparent texels show their colours as others do. `contents` are those
+    /// of the image file, where they are not to be read from the path.
     pub fn of_model(path: PathBuf, contents: Option<Vec<u8>>) -> Self {
         Self { path, contents, is_opaque: true, ..Self::default() }
     }
@@ -67,7 +67,7 @@ impl Texture {
         Self { path, is_opaque: true, cuts_out: true, ..Self::default() }
     }
 
-    /// Tells whether surfaces that show the texture are not there where its [`alpha`](Self::alpha) is below [`CUTOFF`].
+    /// Tells whether the texture cuts surfaces out where its [`alpha`](Self::alpha) is below [`CUTOFF`].
     pub fn cuts_out(&self) -> bool {
         self.cuts_out
     }
@@ -77,7 +77,7 @@ impl Texture {
         &self.path
     }
 
-    /// Lets bytes stand for the light that an image shows with them. This must be set before the file is read.
+    /// Sets the display that turns bytes into light. This must be done before the file is read.
     pub fn decode_by(&self, display: Display) {
         let _ = self.display.set(display);
     }
@@ -108,7 +108,7 @@ impl Texture {
         Ok(Picture { texels, sums: OnceLock::new(), remarks })
     }
 
-    /// Returns what is shown differently from the image, phrased to follow the texture's name.
+    /// Returns the remarks on differences from the image, phrased to follow the texture's name.
     pub fn remarks(&self) -> &[&'static str] {
         self.picture.get().and_then(|picture| picture.as_ref().ok()).map_or(&[], |picture| &picture.remarks)
     }
@@ -132,14 +132,14 @@ impl Texture {
     }
 
     /// Returns the light of a texel by its column from the left and its row from the bottom, each channel from 0 to
-    /// [`brightest`](Self::brightest). Beyond an edge, it is that of the texel at the edge; a texture whose image cannot be
-    /// read is white.
+    /// [`brightest`](Self::brightest). Beyond an edge, it is that of the texel at the edge. A texture whose image
+    /// cannot be read is white.
     pub fn texel(&self, column: u32, row: u32) -> Rgb {
         self.load().map_or(Rgb::ONE, |texels| texels.light(column, row))
     }
 
-    /// Returns the mean light of a rectangle, given by its lower left and its upper right corner in texels. Beyond an edge of the
-    /// image, texels are those at the edge.
+    /// Returns the mean light of a rectangle, given by its lower left and its upper right corner in texels. Beyond an
+    /// edge of the image, texels are those at the edge.
     pub fn mean(&self, low: DVec2, high: DVec2) -> Rgb {
         let Ok(texels) = self.load() else { return Rgb::ONE };
         let Some(Ok(picture)) = self.picture.get() else { return Rgb::ONE };
@@ -151,14 +151,14 @@ impl Texture {
         picture.sums.get_or_init(|| Sums::of(texels)).mean(low, high)
     }
 
-    /// Returns a texel of an image that has no colours but other numbers, each from 0 to 1, as [`texel`](Self::texel) does; those
-    /// of a texture whose image cannot be read are 0.5, 0.5 and 1, which as a normal is straight.
+    /// Returns a texel of an image of other numbers than colours, each from 0 to 1, as [`texel`](Self::texel) does.
+    /// If the image cannot be read, the numbers are 0.5, 0.5 and 1, which stand for a straight normal.
     pub fn numbers(&self, column: u32, row: u32) -> DVec3 {
         self.load().map_or(DVec3::new(0.5, 0.5, 1.0), |texels| texels.numbers(column, row))
     }
 
-    /// Returns how far a texel is opaque, from 0 to 1, as [`texel`](Self::texel) does: 1 unless the texture is
-    /// [cut out](Self::cuts_out), or is one of a model.
+    /// Returns the opacity of a texel, from 0 to 1, as [`texel`](Self::texel) does: 1 unless the texture is [cut
+    /// out](Self::cuts_out), or is one of a model.
     pub fn alpha(&self, column: u32, row: u32) -> f64 {
         self.load().map_or(1.0, |texels| texels.alpha(column, row))
     }
@@ -168,7 +168,8 @@ impl Texture {
         self.load().is_ok_and(Texels::has_alpha)
     }
 
-    /// Bounds the light of a channel of any texel: 1, unless the file has colours above 1 and the rules of light show them.
+    /// Bounds the light of a channel of any texel: 1, unless the file has colours above 1 and the rules of light show
+    /// them.
     pub fn brightest(&self) -> f64 {
         self.load().map_or(1.0, Texels::brightest)
     }

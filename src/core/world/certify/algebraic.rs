@@ -1,4 +1,5 @@
-//! First hits of a surface whose equation is a polynomial, found by its coefficients along the line, rounded or exact.
+//! First hits of a surface whose equation is a polynomial, found from its coefficients along the line, rounded or
+//! exact.
 
 use super::equation::{Equation, HitEnclosure, Values, is_kept};
 use crate::geometry::sight::{Line, Sight};
@@ -21,8 +22,9 @@ impl<E: Equation, C: Coefficient> Coefficients<C> for E {
     }
 }
 
-/// Finds the first hit with t > 0 of a line in world coordinates; `None` where the equation is no polynomial. With `leaves`, the
-/// line's true start lies on the shape, and it is `None` also where the root at the start is not told from others.
+/// Finds the first hit with t > 0 of a line in world coordinates; `None` where the equation is no polynomial. With
+/// `leaves`, the line's true start lies on the shape, and the result is also `None` where the root at the start is
+/// not told from others.
 pub(super) fn first_hit<C: Coefficient>(
     shape: &dyn Coefficients<C>,
     line: &Line<Interval<C::End>>,
@@ -36,7 +38,7 @@ pub(super) fn first_hit<C: Coefficient>(
     (!(leaves && matches!(first, HitEnclosure::Doubtful(_)))).then_some(first)
 }
 
-/// Finds the hits with t > 0 in order, up to the first that is open; `None` where [`first_hit`] is.
+/// Finds the hits with t > 0 in order, up to the first that is open; `None` where [`first_hit`] returns `None`.
 pub(super) fn all_hits<C: Coefficient>(
     shape: &dyn Coefficients<C>,
     line: &Line<Interval<C::End>>,
@@ -50,7 +52,8 @@ pub(super) fn all_hits<C: Coefficient>(
     (!(leaves && matches!(all[..], [HitEnclosure::Doubtful(_), ..]))).then_some(all)
 }
 
-/// Visits the hits with t > 0 of a line in order, until the visitor returns true; `None` where the equation is no polynomial.
+/// Visits the hits with t > 0 of a line in order, until the visitor returns true; `None` where the equation is no
+/// polynomial.
 fn visit_hits<C: Coefficient>(
     shape: &dyn Coefficients<C>,
     line: &Line<Interval<C::End>>,
@@ -65,10 +68,10 @@ fn visit_hits<C: Coefficient>(
         return None;
     }
     if leaves {
-        // The root at the start is amid the piece, not at its end.
+        // The root at the start lies inside the piece, not at its end.
         from = from - (to - from) * C::End::of(0.125);
     }
-    // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
+    // The parameter counts from near the shape, so a piece of the line is not a small difference of large numbers.
     let half = (Interval::point(to) - Interval::point(from)).high * C::End::of(0.5);
     let base = Interval::point(from + half);
     let near = Line { origin: line.at(base), dir: line.dir };

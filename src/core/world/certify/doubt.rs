@@ -17,8 +17,8 @@ pub enum Doubt {
     Jumps,
     /// The ray does not touch the surface, and the equation does not jump: the search needs more digits or more steps.
     Long,
-    /// The surface has no equation, but u and v, and Krawczyk's test decides nothing where derivatives by them are parallel or
-    /// 0, and where two sheets are equally far, as far as 237 bits tell.
+    /// The surface is given by u and v, without an equation. Krawczyk's test decides nothing where the derivatives by
+    /// u and v are parallel or 0, or where two sheets are equally far, as far as 237 bits tell.
     Singular,
 }
 
@@ -34,8 +34,9 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// The widths of the places that are examined, as fractions of the distance: far wider than what 237 bits leave open of a
-/// root, and than the pieces in which a jump is left; the first is far narrower than what `f64` tells.
+/// The widths of the places that are examined, as fractions of the distance. The first is far wider than the
+/// uncertainty of a root with 237 bits, and far narrower than that with `f64`. The second is wider than the pieces to
+/// which a search cuts a jump.
 const TOUCH: f64 = 1e-30;
 const JUMP: f64 = 4.0 * f64::EPSILON;
 

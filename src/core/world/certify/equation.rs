@@ -9,7 +9,7 @@ use tabray_exact::jet::Jet;
 use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
 
-/// A shape given by an equation, of whose solutions a part is kept.
+/// A shape given by an equation. Some of its solutions may be cut off.
 ///
 /// The equation is written in the numbers of the scene. A plane's equation uses the normal as given, not a unit vector:
 /// otherwise the proof would be about the rounded vector.
@@ -33,7 +33,7 @@ pub trait Equation {
     /// Returns the equation's value at a point: 0 on the surface, with opposite signs on the two sides.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
-    /// Tells whether [`along`](Self::along) a line is a polynomial of a degree that a [`Polynomial`] may have.
+    /// Tells whether [`along`](Self::along) returns a polynomial within the degree limit of a [`Polynomial`].
     fn is_polynomial(&self) -> bool {
         false
     }
@@ -48,7 +48,8 @@ pub trait Equation {
         None
     }
 
-    /// Returns the estimated number of arithmetic operations of [`value`](Self::value), if that is a formula of the scene.
+    /// Returns the estimated number of arithmetic operations of [`value`](Self::value), if that is a formula of the
+    /// scene.
     fn cost(&self) -> usize {
         1
     }

@@ -1,4 +1,4 @@
-//! The hits of all lines through a footprint at once: lines whose coefficients depend on the place in it.
+//! The hits of all lines through a footprint at once. The lines' coefficients depend on the place in the footprint.
 //!
 //! The equations are those of the proofs of single lines, evaluated in [`Affine`] numbers.
 
@@ -154,7 +154,7 @@ fn roots([a, b, c]: [Affine; 3]) -> [Option<FootprintHit>; 2] {
         };
     }
     if c.is_zero() && !a.has_zero() {
-        // The start itself is the other one.
+        // The start itself is the other root.
         return [Some(FootprintHit::Hits(-(b + b) / a)), None];
     }
     let discriminant = b * b - a * c;
@@ -213,8 +213,8 @@ fn farther_than(a: Affine, b: Affine) -> f64 {
     if far > 0.0 { far } else { 0.0 }
 }
 
-/// Finds the hits of any surface, by splitting the lines until a piece of them certainly has no root, or exactly one
-/// each.
+/// Finds the hits of any surface, by splitting the lines until each piece certainly has no root, or exactly one on
+/// each line.
 fn search(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &mut dyn FnMut(FootprintHit)) {
     let [low, high] = shape.extent();
     let coarse = coarse(line);
@@ -230,7 +230,7 @@ fn search(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &m
     }
     let shortest = SHORTEST * (to - from);
     let mut pending = vec![(from, to)];
-    // The pieces in which a root may be or not, as far as is known.
+    // The pieces in which it is unknown whether there is a root.
     let mut open: Option<(f64, f64)> = None;
     for _ in 0..PIECES {
         let Some((low, high)) = pending.pop() else { break };
@@ -296,8 +296,8 @@ fn slope_at(shape: &dyn Values<Affine>, line: &Line<Affine>, t: Affine) -> Dual<
     shape.slope(line.along(Dual::variable(t)))
 }
 
-/// Encloses the only root that each line may have in a piece on which the value is strictly monotonic; `Some(None)` where
-/// there is none, and `None` where that is open.
+/// Encloses the only root that each line may have in a piece on which the value is strictly monotonic; `Some(None)`
+/// where there is none, and `None` where that is open.
 fn only(shape: &dyn Values<Affine>, line: &Line<Affine>, (low, high): (f64, f64)) -> Option<Option<Affine>> {
     let sign = |at: f64| {
         let value = shape.value(line.at(Affine::constant(at))).range();
@@ -334,7 +334,7 @@ fn root(shape: &dyn Values<Affine>, line: &Line<Affine>, low: f64, high: f64) ->
         root = Some(next);
         (low, high) = (low.max(range.low), high.min(range.high));
     }
-    // The piece is at least known to hold it.
+    // The piece at least contains the root.
     root.or_else(|| Some(piece(low, high).absorbing(ALONG)))
 }
 

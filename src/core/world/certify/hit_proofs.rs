@@ -1,4 +1,4 @@
-//! Proofs about rays that continue from a point of a surface: mirrored rays, those that glass lets pass, and shadow rays.
+//! Proofs about rays that continue from a point of a surface: mirrored, transmitted and shadow rays.
 //!
 //! No number of such a ray comes from the scene. The coefficients of its line are intervals, and the line starts at the
 //! true point on the surface, somewhere in an enclosure. The point is known to lie on the surface, although no interval
@@ -21,8 +21,8 @@ pub trait HitProofs<F: Float> {
     /// in world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize);
 
-    /// Returns what is proven about each of a line's hits with t > 0, in order, up to the first that is open; `None` where they
-    /// are only found one from the other. Then the shape has one part.
+    /// Returns what is proven about each of a line's hits with t > 0, in order, up to the first that is open; `None`
+    /// where each hit can only be found from the one before. Only shapes of one part return hits.
     fn all_hits(&self, _line: &Line<Interval<F>>, _leaves: Option<usize>) -> Option<Vec<HitEnclosure<F>>> {
         None
     }
@@ -52,7 +52,7 @@ pub trait HitProofs<F: Float> {
         None
     }
 
-    /// Returns the index of the face that a part is, as [`Hittable::face`] tells it, where the parts of the shape are faces.
+    /// Returns the index of a part's face, as [`Hittable::face`] tells it, if the parts of the shape are faces.
     ///
     /// [`Hittable::face`]: crate::world::hittable::Hittable::face
     fn face_of(&self, _part: usize) -> Option<u32> {

@@ -1,9 +1,9 @@
 //! What is certain about a ray's first hit, proven in outward-rounded interval arithmetic. Rendering asks for these
 //! proofs only where its own arithmetic leaves a hit open.
 //!
-//! A proof starts from the numbers of the scene: a shape's [`Equation`] is written in them, not in what its constructor
-//! derived from them, and the ray is a [`Sight`]. Everything after that is computed with intervals, so that a proof
-//! holds for the real numbers.
+//! A proof starts from the numbers of the scene: a shape's [`Equation`] is written in them, not in what its
+//! constructor derived from them, and the ray is a [`Sight`]. Everything after that is computed with intervals, so a
+//! proof holds for the real numbers.
 
 mod algebraic;
 mod along;
@@ -135,8 +135,8 @@ pub(crate) fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEn
     }
 }
 
-/// Tells whether a point lies inside of a closed surface, where the equation is below 0; `None` where the surface may pass
-/// through the box that extends `error` world units from the point along each axis.
+/// Tells whether a point lies inside of a closed surface, where the equation is below 0; `None` where the surface may
+/// pass through the box that extends `error` world units from the point along each axis.
 pub fn contains(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
     let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
     let Line { origin, .. } = shape.to_local(Line { origin, dir: [Interval::constant(0.0); 3] });
@@ -146,7 +146,7 @@ pub fn contains(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
     }
     let value = shape.value(origin);
     let is_inside = value.high < 0.0;
-    // Where the box cuts off what is inside, its faces are the surface.
+    // Where the box cuts off the inside, its faces are part of the surface.
     let is_cut =
         is_inside && (0..3).any(|axis| origin[axis].low < low[axis] || origin[axis].high > high[axis]);
     (!value.has_zero() && !is_cut).then_some(is_inside)

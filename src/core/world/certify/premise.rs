@@ -1,11 +1,11 @@
-//! What proofs start from, where that is not the numbers of the scene.
+//! The premises of proofs, besides the numbers of the scene.
 
 use std::fmt;
 
-/// What is known of the proofs about a shape before any ray.
+/// A premise of all proofs about a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Premise {
-    /// The proofs take this for exact.
+    /// The proofs treat these numbers as exact.
     Assumed(Assumption),
     /// There is no equation to prove hits by. All that is known is that a hit lies in the bounds of the shape.
     NoEquation,
@@ -23,11 +23,11 @@ pub enum Assumption {
     Vertices,
     /// The normals at the vertices of a mesh that looks smooth. Only proofs of colours ask for them.
     Normals,
-    /// The bounding box of a shape without an equation, which its plugin promises to lie inside of it.
+    /// The bounding box of a shape without an equation. Its plugin promises that the shape lies inside.
     Bounds,
 }
 
-/// Displays what is taken as it is, phrased to follow "assumed: ".
+/// Displays the assumption, phrased to follow "assumed: ".
 impl fmt::Display for Assumption {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {

@@ -38,7 +38,7 @@ pub fn first_hit<F: Float>(
             return HitEnclosure::Misses;
         }
     }
-    // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
+    // The parameter counts from near the shape, so a piece of the line is not a small difference of large numbers.
     let base = Interval::point(from + F::of(0.5) * (to - from));
     let near = Line { origin: line.at(base), dir: line.dir };
     // Where rounding moves the line by more than the shape's size, a hit cannot be proven, and a miss is proven at once
@@ -122,8 +122,8 @@ fn open_pieces<F: Float>(
     pieces
 }
 
-/// Returns a length from a line's start, which lies on the surface, within which the value is strictly monotonic, and so
-/// has no other root; at most `to`. `None` where the line touches the surface, as far as intervals tell.
+/// Returns a length from a line's start, which lies on the surface, within which the value is strictly monotonic, and
+/// so has no other root; at most `to`. `None` where the line touches the surface, as far as intervals tell.
 fn left<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>, to: F) -> Option<F> {
     let shortest = F::of(1024.0) * F::EPSILON * to;
     let mut length = to;
@@ -162,11 +162,11 @@ enum Judgement<F> {
     Free,
     /// The piece has exactly one root, enclosed by this interval.
     Root(Interval<F>),
-    /// The value may be 0 in this interval alone, where its slope is 0, and no shorter pieces tell whether it is.
+    /// The value may be 0 only in this interval, where its slope is 0. Shorter pieces do not tell whether it is.
     Touch(Interval<F>),
     /// It is certain neither that the piece has no root nor that it has exactly one.
     Open,
-    /// As for an open piece, and the slope has no bound, as where the value jumps.
+    /// As for `Open`, and the slope has no bound, as where the value jumps.
     Jump,
 }
 
@@ -188,8 +188,8 @@ impl<F: Float> Search<'_, F> {
         self.shape.bend(at).second
     }
 
-    /// Tells whether a piece has no hit although the slope has no bounds: the surface is cut off there, as where its formula is
-    /// not defined, or the formula jumps past 0.
+    /// Tells whether a piece has no hit although the slope has no bounds: the surface is cut off there, as where its
+    /// formula is not defined, or the formula jumps past 0.
     fn is_broken(&self, piece: Interval<F>) -> bool {
         let jumps = |field: &Field| field.jumps_past_0(self.line.at(piece));
         self.shape.field().is_some_and(jumps) || is_kept(self.shape, self.line, piece) == Some(false)
@@ -226,8 +226,8 @@ impl<F: Float> Search<'_, F> {
         if bend.has_zero() || !bend.is_bounded() { Judgement::Open } else { self.turning(piece, bend) }
     }
 
-    /// Judges a piece on which the second derivative has these bounds, which do not contain 0, so that the slope is 0
-    /// at one place at most. If there is such a place, the value there decides. Where no number of digits tells that
+    /// Judges a piece on which the second derivative has these bounds. They do not contain 0, so the slope is 0 at no
+    /// more than one place. If there is such a place, the value there decides. Where no number of digits tells that
     /// value from 0, shorter pieces would not help.
     fn turning(&self, piece: Interval<F>, bend: Interval<F>) -> Judgement<F> {
         let (mut place, mut exists) = (piece, false);
@@ -262,7 +262,7 @@ impl<F: Float> Search<'_, F> {
         Judgement::Touch(Interval { low: at.low.max(piece.low), high: at.high.min(piece.high) })
     }
 
-    /// Judges a piece on which the value is strictly monotonic, with these slopes, and which so has at most one root.
+    /// Judges a piece on which the value is strictly monotonic, with these slopes, and has at most one root.
     fn only(&self, piece: Interval<F>, slope: Interval<F>) -> Judgement<F> {
         let sign = |at: F| self.value(Interval::point(at));
         let (first, last) = (sign(piece.low), sign(piece.high));

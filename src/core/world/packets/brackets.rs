@@ -6,7 +6,8 @@ use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
 use crate::world::hittable::Sides;
 
-/// Merges hits as [`PacketIntersect::closest_hits`] does by default. `find` computes brackets of the hits before some ends.
+/// Merges hits as [`PacketIntersect::closest_hits`] does by default. `find` computes brackets of the hits before some
+/// ends.
 ///
 /// [`PacketIntersect::closest_hits`]: super::shape::PacketIntersect::closest_hits
 pub(crate) fn closest_by_brackets(
@@ -50,7 +51,8 @@ fn with_brackets(count: usize, call: impl FnOnce(&mut [f64], &mut [f64]) -> bool
     call(&mut near[..count], &mut far[..count])
 }
 
-/// Computes brackets of the first hits of a packet's rays, some of which `find` searches together, each in a range of its own.
+/// Computes brackets of the first hits of a packet's rays. `find` searches for some of them together, each in its own
+/// range.
 pub(super) fn of_beams(
     rays: RayPacket,
     ends: &[f64],
@@ -63,7 +65,7 @@ pub(super) fn of_beams(
         let (mut ranges, mut brackets) = ([RayRange::ALL; BEAM], [Bracket::MISS; BEAM]);
         for (lane, end) in ends.iter().enumerate() {
             let is_missed = rays.side(lane).is_some_and(|side| !can_hit_itself.contain(side));
-            // Nothing is hit before 0.
+            // A range up to 0 has no hits.
             ranges[lane] = rays.range(lane, if is_missed { 0.0 } else { *end });
         }
         find(rays, &ranges[..ends.len()], &mut brackets[..ends.len()]);

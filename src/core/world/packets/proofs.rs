@@ -1,4 +1,4 @@
-//! What is certain about the hits of a shape, by how its distances are found.
+//! Proofs about the hits of a shape, by the way in which its distances are found.
 
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{MISS, Ray, RayRange};
@@ -18,8 +18,8 @@ pub trait HitQueries: Send + Sync {
     /// numbers. Rays that start at such a point leave the shape.
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool;
 
-    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error, in world units, along each
-    /// axis: in a cube around the point.
+    /// Tells whether a point lies in a closed shape; `None` where the surface may be within an error, in world units,
+    /// along each axis: in a cube around the point.
     fn contains(&self, _at: DVec3, _error: f64) -> Option<bool> {
         None
     }
@@ -30,8 +30,8 @@ pub trait HitQueries: Send + Sync {
         false
     }
 
-    /// Returns the facet in whose plane all of a closed shape's surface within an error in world units of a point lies;
-    /// `None` where that is not known.
+    /// Returns the facet whose plane contains all of a closed shape's surface within an error, in world units, of a
+    /// point; `None` where that is not known.
     fn facet(&self, _at: DVec3, _error: f64) -> Option<Facet> {
         None
     }
@@ -153,7 +153,7 @@ by_equation!(
     }
 );
 
-/// Passes on what proofs by the equation of a shape assume.
+/// Passes on the assumptions of proofs by a shape's equation.
 fn assumed(shape: &impl Hittable, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
     shape.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
 }

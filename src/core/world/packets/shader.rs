@@ -109,7 +109,7 @@ kernels! {
         let points = SurfacePoints { positions: points.positions.first(out.len()), ..points };
         each!(points, lane, at, {
             let tile = shader.tile(at);
-            // Adding 0 makes minus zero zero, whose bits differ.
+            // Adding 0 turns minus zero, whose bits differ, into zero.
             let [column, row] = [(tile.x + 0.0).to_bits(), (tile.y + 0.0).to_bits()];
             out[lane] = column.rotate_left(17) ^ row.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         });

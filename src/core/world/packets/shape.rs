@@ -1,8 +1,9 @@
 //! Shapes for packets of rays.
 //!
-//! A [`Shape`] has three interfaces. [`ScalarIntersect`] is the plugin author's functions for one ray, inlined into loops that
-//! are compiled for each instruction set. [`PacketIntersect`] takes packets; it is derived from [`ScalarIntersect`], except for shapes
-//! that take packets themselves. [`HitQueries`] tells what is certain about hits.
+//! A [`Shape`] has three interfaces. [`ScalarIntersect`] has the plugin author's functions for one ray, inlined into
+//! loops that are compiled for each instruction set. [`PacketIntersect`] takes packets; it is derived from
+//! [`ScalarIntersect`], except for shapes that take packets themselves. [`HitQueries`] tells what is certain about
+//! hits.
 
 pub use super::proofs::HitQueries;
 
@@ -60,21 +61,24 @@ pub trait PacketIntersect: Send + Sync {
     }
 
     /// Computes the distances of certain hits that [`closest_hits`](Self::closest_hits) has bracketed; NaN where a
-    /// distance takes more than plain arithmetic. Where a bracket has no width, the distance is known, and may be left.
+    /// distance takes more than plain arithmetic. Where a bracket has no width, the distance is known, and may be
+    /// left out.
     fn refine(&self, cpu: Cpu, rays: RayPacket, brackets: (&[f64], &[f64]), out: &mut [f64]);
 
     /// Computes the points, normals and sides that the rays of a packet hit at these distances, in world units.
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction);
 
-    /// Tells whether [`interact`](Self::interact) finds normals by the rays and not, as by default, by the points.
+    /// Tells whether [`interact`](Self::interact) finds normals from the rays. By default, it finds them from the
+    /// points.
     fn finds_normals_by_rays(&self) -> bool {
         false
     }
 
-    /// Returns a bracket of the first hit of each ray that one stands for.
+    /// Returns a bracket of the first hit of all rays that this one stands for.
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
-    /// Computes what [`t_bounds`](Self::t_bounds) returns for each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in a range of its own.
+    /// Computes the result of [`t_bounds`](Self::t_bounds) for each of up to
+    /// [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in its own range.
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
         rays.each(ranges, brackets, |ray, range| self.t_bounds(ray, range));
     }
@@ -92,7 +96,8 @@ pub trait ScalarIntersect: Send + Sync {
     /// Whether rays that lie close together are searched together, by [`t_bounds_each`](Self::t_bounds_each).
     const BY_BEAMS: bool = false;
 
-    /// Computes a bracket of the first hit of each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in a range of its own.
+    /// Computes a bracket of the first hit of each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in
+    /// its own range.
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
         rays.each(ranges, brackets, |ray, range| self.t_bounds(ray, range));
     }
@@ -100,7 +105,7 @@ pub trait ScalarIntersect: Send + Sync {
     /// Returns the plugin author's shape.
     fn author(&self) -> &Self::Author;
 
-    /// Returns a bracket of the first hit of each ray that this one stands for.
+    /// Returns a bracket of the first hit of all rays that this one stands for.
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
     /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
@@ -113,7 +118,7 @@ pub trait ScalarIntersect: Send + Sync {
         false
     }
 
-    /// Writes what [`refine`](Self::refine) returns for each ray of a packet.
+    /// Writes the result of [`refine`](Self::refine) for each ray of a packet.
     #[inline(always)]
     fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
         let (count, rays) = (out.len(), rays.first(out.len()));
@@ -158,7 +163,7 @@ impl<T: Bracketed, P> ScalarIntersect for Shape<T, ByBracket, P> {
 }
 
 /// The bracket follows from the author's distance, and from whether the shape touches the ray's origin. In a copy's
-/// coordinates, too, the hit counts that the author finds there.
+/// coordinates, too, the hit at the author's distance counts.
 impl<T: Hittable, P: TieBreaking> ScalarIntersect for Shape<T, ByDistance, P>
 where
     Self: HitQueries,
@@ -186,7 +191,8 @@ where
 }
 
 /// Returns the bracket of a shape that has no quicker one than its distance. The bracket is unknown where rounding
-/// decides the distance. `is_on_surface` tells whether the shape touches the ray's origin within the range's `origin_error`.
+/// decides the distance. `is_on_surface` tells whether the shape touches the ray's origin within the range's
+/// `origin_error`.
 #[inline(always)]
 pub fn by_distance(
     ray: &Ray,
