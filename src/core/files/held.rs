@@ -1,5 +1,4 @@
-//! Files that a scene names: those of the system, and those that a program holds in memory, as in a browser, which has no
-//! files.
+//! Files that a scene names: on disk, or held in memory by a program without a file system, as in a browser.
 
 use super::{open, plain};
 use std::collections::BTreeMap;
@@ -11,14 +10,14 @@ use std::sync::{Arc, PoisonError, RwLock};
 /// The files that are held.
 static ALL: RwLock<BTreeMap<PathBuf, Arc<[u8]>>> = RwLock::new(BTreeMap::new());
 
-/// Holds a file, which is then found at this path in place of one of the system.
+/// Holds a file in memory, which replaces a file of the system at this path.
 pub fn hold(path: &Path, bytes: Vec<u8>) {
     let mut all = ALL.write().unwrap_or_else(PoisonError::into_inner);
     all.insert(plain(path), bytes.into());
 }
 
-/// Returns the path at which the file for a path is held: the path itself, or else its name alone, as a file that comes
-/// without its folder stands for one of that name in any folder.
+/// Returns the path at which the file for a path is held: the path itself, or else its name alone. A file that is
+/// held without a folder stands for a file of that name in any folder.
 pub fn place(path: &Path) -> Option<PathBuf> {
     let all = ALL.read().unwrap_or_else(PoisonError::into_inner);
     if all.is_empty() {
@@ -36,9 +35,9 @@ fn find(path: &Path) -> Option<Arc<[u8]>> {
 
 /// A file that a scene names, opened to be read.
 pub enum SceneFile {
-    /// One of the system.
+    /// A file of the system.
     Stored(File),
-    /// One that is held.
+    /// A file that is held.
     Held(Cursor<Arc<[u8]>>),
 }
 
@@ -46,7 +45,7 @@ impl SceneFile {
     /// Opens the file at a path.
     ///
     /// # Errors
-    /// Returns those of [`open`].
+    /// Returns the errors of [`open`].
     pub fn open(path: &Path) -> io::Result<Self> {
         match find(path) {
             Some(bytes) => Ok(Self::Held(Cursor::new(bytes))),
@@ -57,7 +56,7 @@ impl SceneFile {
     /// Returns the length in bytes.
     ///
     /// # Errors
-    /// Returns those of the system.
+    /// Returns the errors of the system.
     pub fn length(&self) -> io::Result<u64> {
         match self {
             Self::Stored(file) => Ok(file.metadata()?.len()),

@@ -1,5 +1,5 @@
-//! Opens files that a scene or a command names; the path may lead to something other than a file, or out of a folder
-//! that the program is confined to.
+//! Opens files that a scene or a command names. A path may lead to something other than a file, or out of the folder
+//! to which the program is confined.
 
 pub mod held;
 
@@ -8,7 +8,7 @@ use std::io::{self, BufRead, Seek};
 use std::path::{Component, Path, PathBuf};
 use std::sync::OnceLock;
 
-/// The bytes of an image's file. Decoders are given a `&mut dyn` of it, so that each is compiled once.
+/// The bytes of an image's file. Decoders take it as `&mut dyn`, so each is compiled once.
 pub trait ImageBytes: BufRead + Seek {}
 
 impl<B: BufRead + Seek> ImageBytes for B {}
@@ -87,8 +87,8 @@ fn refuse_other(kind: &Metadata) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns options of opening and reading that never wait: some files of the system, such as `/proc/kmsg`, have more to
-/// read only later.
+/// Returns options of opening and reading that never wait: some files of the system, such as `/proc/kmsg`, get more
+/// to read only later.
 fn without_waiting() -> OpenOptions {
     #[cfg_attr(not(unix), allow(unused_mut, reason = "only there is something to be set"))]
     let mut options = OpenOptions::new();
