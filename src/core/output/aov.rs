@@ -1,4 +1,4 @@
-//! Images of what a renderer computes beside colours: depth, normals, objects, the cost of each pixel and its error.
+//! Auxiliary images: depth, normals, objects, the cost of each pixel and its error.
 
 use crate::geometry::sight::Sight;
 use crate::named;
@@ -17,9 +17,8 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::ops::ControlFlow;
 
-/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples, the colours
-/// of the error and what is undecided are taken along the ray through the centre of each pixel, however many samples
-/// the pixel has.
+/// An auxiliary image (an arbitrary output variable). Depth, normal, object, face and the error of the distance are
+/// taken along the ray through the centre of each pixel, however many samples the pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Aov {
@@ -77,8 +76,7 @@ pub struct Layer {
     pub worst: Option<(f64, [usize; 2])>,
 }
 
-/// The grey of the farthest depth, as a fraction of white, so that this depth differs from the black where nothing is
-/// hit.
+/// The grey of the farthest depth, as a fraction of white. It differs from the black where nothing is hit.
 const FARTHEST: f64 = 0.1;
 
 named!(Aov {
@@ -161,7 +159,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Returns that of a camera.
+    /// Returns the settings of a camera.
     pub fn of(camera: &Sensor) -> Self {
         Self {
             size: camera.pixels,
@@ -237,7 +235,7 @@ fn shown_all(colours: impl Iterator<Item = DVec3>) -> Vec<u8> {
 }
 
 pub(super) fn depth(depths: &[f64]) -> Layer {
-    // Brightness falls with 1 / distance, so that near objects keep their contrast beside a plane that extends to
+    // Brightness falls with 1 / distance, so near objects keep their contrast beside a plane that extends to
     // infinity.
     let finite = || depths.iter().filter(|depth| depth.is_finite()).map(|depth| 1.0 / depth);
     let (far, near) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
@@ -323,7 +321,7 @@ pub(super) fn samples(pixels: &[(u32, Option<f64>)], setting: &Setting) -> Layer
     }
 }
 
-/// Shows what is proven of pixels: as grey up to the limit, and red beyond.
+/// Shows proven bounds: grey up to the limit, and red beyond.
 pub(super) fn bounds(pixels: &[PixelBound], setting: &Setting) -> Layer {
     let [width, height] = setting.size;
     let limit = setting.limit().unwrap_or(1.0);
@@ -390,8 +388,8 @@ pub(super) fn error(errors: &[PixelError], [width, height]: [usize; 2]) -> Layer
     }
 }
 
-/// Returns a colour for this index. Hues advance by the golden ratio, so that the first few differ well
-/// however many there are.
+/// Returns a colour for this index. Hues advance by the golden ratio, so the first few differ well however many there
+/// are.
 fn colour_of(index: u32) -> DVec3 {
     let hue = (f64::from(index) * 0.618_033_988_749_895).fract();
     let channel = |shift: f64| ((6.0 * (hue + shift).fract() - 3.0).abs() - 1.0).clamp(0.0, 1.0);

@@ -1,5 +1,5 @@
-//! The numbers behind the images beside the main one, pixel by pixel, for images that are put together from parts: how a
-//! pixel is shown may depend on all others.
+//! The numbers behind auxiliary images, pixel by pixel, for images that are assembled from parts: the colour that
+//! shows a pixel may depend on all others.
 
 use crate::output::aov::{self, Aov, Layer, PixelError, Setting};
 use crate::render::plan::Plan;

@@ -1,4 +1,4 @@
-//! Joins the codes of streams that `fdeflate` writes, of one block each, at any bit.
+//! Joins the codes of streams of `fdeflate`, which have one block each, at any bit.
 
 /// The number of bits before the codes of a stream: the header of zlib, and that of the block with its Huffman code.
 const BEFORE: usize = 429;
@@ -34,8 +34,8 @@ pub(super) fn append(stream: &mut Vec<u8>, next: &[u8]) {
     }
 }
 
-/// Returns the number of bits of a stream: the code that ends the block ends with a 1, after which the last byte is filled
-/// up with zeros.
+/// Returns the number of bits of a stream: the code that ends the block ends with a 1, after which the last byte is
+/// filled up with zeros.
 fn len(stream: &[u8]) -> usize {
     8 * stream.len() - stream.last().map_or(0, |last| last.leading_zeros() as usize)
 }

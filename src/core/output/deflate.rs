@@ -1,5 +1,5 @@
-//! Compresses the rows of a PNG in pieces that do not depend on each other, so that each can be compressed on a thread of
-//! its own. Their bytes, one after the other, are one zlib stream.
+//! Compression of the rows of a PNG in independent pieces, each on a thread of its own. Their bytes, one after the
+//! other, are one zlib stream.
 
 use crate::named;
 use crate::output::codes;
@@ -36,10 +36,11 @@ pub(super) const EMPTY_END: [u8; 5] = [1, 0, 0, 0xff, 0xff];
 /// The length of the checksum at the end of a zlib stream, in bytes.
 const TRAILER: usize = 4;
 
-/// The minimum length of the stripes of a piece, in bytes. To start a thread takes as long as to compress some of them.
+/// The minimum length of the stripes of a piece, in bytes. Starting a thread takes as long as compressing some of
+/// them.
 const STRIPE: usize = 1 << 14;
 
-/// The length of a block of bytes that are stored as they are, as `flate2` has it.
+/// The length of a block of bytes that are stored as they are, as in `flate2`.
 const STORED: usize = 31745;
 
 /// Some rows of a PNG, with 3 bytes for each pixel.
@@ -58,12 +59,13 @@ pub(super) struct Piece {
 pub(super) struct CompressedPiece {
     /// Its bytes in the zlib stream. The last piece lacks the stream's checksum.
     pub bytes: Vec<u8>,
-    /// The checksum of what was compressed.
+    /// The checksum of the bytes before compression.
     pub checksum: Checksum,
 }
 
 impl Piece {
-    /// Compresses the rows, if that is quick in a number of stripes at the same time. The bytes do not depend on the number.
+    /// Compresses the rows; for [`Compression::Fast`], in a number of stripes at the same time. The bytes do not
+    /// depend on the number.
     ///
     /// # Errors
     /// No error is known: all output is written to memory.
@@ -103,8 +105,8 @@ impl Piece {
         Ok(CompressedPiece { bytes, checksum })
     }
 
-    /// Returns the stream of some of the rows by themselves, without its checksum, and the checksum. `fdeflate` ends the
-    /// runs of a row with the row, so that the codes of a row do not depend on the rows before it.
+    /// Returns the stream of some of the rows by themselves, without its checksum, and the checksum. `fdeflate` ends
+    /// the runs of a row with the row, so the codes of a row do not depend on the rows before it.
     fn coded(&self, rows: Range<usize>) -> io::Result<(Vec<u8>, Checksum)> {
         let len = rows.len() * (self.row + 1);
         let mut compressor = fdeflate::Compressor::new(Vec::with_capacity(len / 4))?;
@@ -152,7 +154,7 @@ impl Piece {
         let bytes = if self.is_last {
             encoder.finish()?
         } else {
-            // Ends the block, and then at a whole byte.
+            // Ends the block, and then the byte.
             encoder.flush()?;
             take(encoder.get_mut())
         };
@@ -193,7 +195,7 @@ impl Piece {
     }
 }
 
-/// Turns the one block that `fdeflate` writes, which is its stream's last, into one that others follow.
+/// Turns the one block of an `fdeflate` stream, which is marked as the last, into one that others follow.
 fn continues(stream: &mut Vec<u8>) {
     stream[HEADER.len()] &= !1;
     // The code that ends the block ends with a 1, after which the last byte is filled up with zeros. Three zeros begin
@@ -207,7 +209,7 @@ fn continues(stream: &mut Vec<u8>) {
 
 /// The checksum of a zlib stream, Adler-32.
 pub(super) struct Checksum {
-    /// 1 and the sum of the bytes, modulo [`MODULUS`](Self::MODULUS) as all sums are.
+    /// 1 plus the sum of the bytes, modulo [`MODULUS`](Self::MODULUS) like all sums.
     sum: u32,
     /// The sum of the values that `sum` has after each byte.
     sums: u32,
@@ -231,7 +233,7 @@ impl Checksum {
     pub fn and(&self, next: &Self) -> Self {
         let [sum, sums, len] = [self.sum, self.sums, self.len].map(u64::from);
         let [next_sum, next_sums, next_len] = [next.sum, next.sums, next.len].map(u64::from);
-        // Each of the later sums is larger by those bytes.
+        // Each of the later sums is larger by the earlier bytes.
         let bytes = sum + Self::MODULUS - 1;
         let [sum, sums, len] = [bytes + next_sum, sums + next_sums + next_len * bytes, len + next_len]
             .map(|value| (value % Self::MODULUS) as u32);

@@ -8,11 +8,11 @@ const PIXEL: usize = 3;
 /// The filters of rows.
 #[derive(Clone, Copy)]
 pub(super) enum Filter {
-    /// Not at all.
+    /// Bytes are not predicted.
     None,
     /// Each byte is predicted by the one above.
     Up,
-    /// Each row by whichever predictor leaves the smallest numbers.
+    /// Each row is predicted by the predictor that leaves the smallest numbers.
     Adaptive,
 }
 
@@ -83,7 +83,7 @@ fn each(above: &[u8], row: &[u8], filtered: &mut [u8], prediction: impl Fn(u8, u
     }
 }
 
-/// Returns the one of three bytes that is nearest to `left + up - corner`; of two equally near ones, the first.
+/// Returns the byte of three that is nearest to `left + up - corner`; of two equally near ones, the first.
 #[inline(always)]
 fn paeth(left: u8, up: u8, corner: u8) -> u8 {
     let [a, b, c] = [left, up, corner].map(i16::from);

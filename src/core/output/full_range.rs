@@ -43,7 +43,7 @@ impl FullRange {
                 out.write_all(&file.into_inner())
             }
             Self::Pfm => {
-                // A negative scale says that the bytes of a number go from the lowest to the highest.
+                // A negative scale stands for little-endian numbers.
                 write!(out, "PF\n{width} {height}\n-1.0\n")?;
                 for row in pixels.chunks(3 * width).rev() {
                     let bytes: Vec<u8> = row.iter().flat_map(|number| number.to_le_bytes()).collect();
@@ -88,7 +88,7 @@ pub fn read_pfm(mut file: impl BufRead) -> io::Result<Rgb32FImage> {
         let four = [four[0], four[1], four[2], four[3]];
         if scale < 0.0 { f32::from_le_bytes(four) } else { f32::from_be_bytes(four) }
     };
-    // Rows go from the bottom.
+    // Rows are stored from the bottom.
     let rows = bytes.chunks(12 * width as usize).rev();
     let pixels = rows.flat_map(|row| row.chunks(4).map(number)).collect();
     Rgb32FImage::from_raw(width, height, pixels).ok_or_else(wrong)

@@ -1,8 +1,8 @@
-//! How a NumPy array begins in a file ("NPY format", version 1).
+//! The header of a file with a NumPy array ("NPY format", version 1).
 
 use std::io::{self, Write};
 
-/// How each file begins.
+/// The first bytes of each file.
 pub const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// Writes the header of an array with this type and shape, both as NumPy writes them: `'<f8'` and `(3, 4)`.

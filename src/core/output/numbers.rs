@@ -11,13 +11,13 @@ use std::io::{self, Cursor};
 
 /// The numbers of an image's pixels, in rows from the top, each from the left.
 pub enum Numbers {
-    /// Three of each pixel.
+    /// Three numbers for each pixel.
     Triples(Vec<f32>),
     /// The distance of the object that each pixel shows, in world units; infinite where nothing is hit.
     Distances(Vec<f64>),
-    /// An index of each pixel, from 0.
+    /// An index for each pixel, from 0.
     Indices {
-        /// What it is an index of, which names the channel of an EXR.
+        /// The noun for what is counted, which names the channel of an EXR.
         of: &'static str,
         /// The indices; `None` where there is nothing to count.
         indices: Vec<Option<u32>>,
@@ -27,10 +27,10 @@ pub enum Numbers {
 /// A format of files that hold numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberFormat {
-    /// OpenEXR: three channels of f32, of which a distance fills all, or one of u32, where [`NONE`] says that there is
-    /// no index.
+    /// OpenEXR: three channels of f32, all of which a distance fills, or one of u32, where [`NONE`] stands for no
+    /// index.
     Exr,
-    /// A NumPy array of shape (height, width): f8, or i4, where -1 says that there is no index. Triples have none.
+    /// A NumPy array of shape (height, width): f8, or i4, where -1 stands for no index. Triples have no such file.
     Npy,
 }
 
@@ -39,7 +39,7 @@ named!(NumberFormat {
     Npy => "npy",
 });
 
-/// What stands in an EXR where there is no index.
+/// The number in an EXR that stands for no index.
 pub const NONE: u32 = u32::MAX;
 
 impl Numbers {
@@ -77,7 +77,7 @@ impl Numbers {
     }
 }
 
-/// Returns an EXR with one channel of whole numbers, which the image crate does not write.
+/// Returns an EXR with one channel of integers, which the image crate does not write.
 fn channel(name: &str, samples: Vec<u32>, [width, height]: [usize; 2]) -> io::Result<Vec<u8>> {
     let channels = SmallVec::from_iter([AnyChannel::new(name, FlatSamples::U32(samples))]);
     let encoding = Encoding {

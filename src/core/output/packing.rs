@@ -10,8 +10,7 @@ use std::mem::take;
 /// piece has its own codes: in a black image with pieces of this length, the codes are a hundredth of the file.
 pub const PIECE: usize = 1 << 20;
 
-/// The maximum number of pieces that wait until they are compressed together, as many as a renderer has rendered at one
-/// time.
+/// The number of pieces that are compressed together: as many as a renderer has rendered at one time.
 const TOGETHER: usize = 12;
 
 /// Compresses the rows of an image as they come.
@@ -22,7 +21,7 @@ pub(super) struct Packing<'r> {
     row: usize,
     /// The length of a piece in bytes, except for the last.
     piece: usize,
-    /// The number of bytes of the image that have not come yet.
+    /// The number of bytes of the image that are still to come.
     left: usize,
     /// The rows of a piece that have come.
     rows: Vec<u8>,
@@ -85,7 +84,7 @@ impl<'r> Packing<'r> {
         Ok(())
     }
 
-    /// Adds some rows, and compresses what is enough to be compressed.
+    /// Adds some rows, and compresses the pieces once there are enough.
     fn add(&mut self, rows: Vec<u8>, put: &mut impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
         if rows.len() > self.left {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "the image has too many rows"));
@@ -123,7 +122,7 @@ impl<'r> Packing<'r> {
         self.pieces.push(Piece { above, rows, row: self.row, is_last: self.left == 0 });
     }
 
-    /// Compresses the pieces that wait.
+    /// Compresses the waiting pieces.
     fn pack(&mut self, put: &mut impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
         let (pieces, compression) = (take(&mut self.pieces), self.compression);
         let is_last = pieces.last().is_some_and(|piece| piece.is_last);
