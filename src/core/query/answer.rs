@@ -1,4 +1,4 @@
-//! What is known about the first hit of a ray.
+//! Answers about the first hits of rays.
 
 use super::ray::ExactRay;
 use crate::world::certify::{self, Precision};
@@ -16,20 +16,21 @@ pub enum Verdict {
     Edge,
     /// The ray hits several objects first at once, as far as 237 bits tell.
     Tie,
-    /// Neither is known, as where a ray touches a surface and does not cross it, or where a shape has no equation.
+    /// None of these is known, as where a ray touches a surface and does not cross it, or where a shape has no
+    /// equation.
     Undecided,
 }
 
 /// The first hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
-    /// What is known.
+    /// The outcome.
     pub verdict: Verdict,
     /// The precision of the proof; `None` for what the tracer finds, without a proof.
     pub proof: Option<Precision>,
     /// The object by its index; the first of several in the scene. `None` where nothing is hit.
     pub object: Option<usize>,
-    /// Where the hit is, in the ray's own unit; NaN where there is none.
+    /// The t of the hit, in the ray's own unit; NaN where there is none.
     pub t: f64,
     /// Bounds of the real t. Without a proof they are -∞ and ∞.
     pub bounds: Interval,
@@ -51,7 +52,7 @@ pub struct Surroundings {
 }
 
 impl Answer {
-    /// Nothing is hit.
+    /// Returns the answer that nothing is hit.
     pub(super) fn miss(proof: Option<Precision>) -> Self {
         let bounds = Interval { low: f64::NAN, high: f64::NAN };
         Self { verdict: Verdict::Miss, proof, object: None, t: f64::NAN, bounds, distance: f64::NAN }
@@ -71,7 +72,7 @@ impl Answer {
         Self { verdict, proof: Some(precision), object, t, bounds, distance }
     }
 
-    /// Returns what is proven about a hit in these bounds of the ray's t by 53 bits, at the distance where it was traced.
+    /// Returns what 53 bits prove about a hit in these bounds of the ray's t, at the distance that the tracer found.
     pub(super) fn traced(ray: &ExactRay, object: usize, bounds: Interval, distance: f64) -> Self {
         let proof = Some(Precision::Double);
         let known =
@@ -79,12 +80,12 @@ impl Answer {
         known.near(ray.t_at(distance), distance)
     }
 
-    /// Returns the answer with a hit at a t, as near as its bounds allow.
+    /// Returns the answer with its hit at a t, or as near to it as the bounds allow.
     pub(super) fn near(self, t: f64, distance: f64) -> Self {
         Self { t: t.max(self.bounds.low).min(self.bounds.high), distance, ..self }
     }
 
-    /// Returns the answer with no hit that lies beyond a t, in the ray's unit.
+    /// Returns the answer without hits beyond a t, in the ray's unit.
     #[must_use]
     pub fn within(self, t_max: f64) -> Self {
         let (is_beyond, is_within) = match self.proof {
@@ -99,7 +100,8 @@ impl Answer {
         }
     }
 
-    /// Returns only whether anything is hit before a t, in the ray's unit: what is hit first need not be decided for that.
+    /// Returns only whether anything is hit before a t, in the ray's unit. The object that is hit first need not be
+    /// decided for that.
     #[must_use]
     pub fn any_within(self, t_max: f64) -> Self {
         let is_certain =

@@ -13,8 +13,8 @@ use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 /// A crossing of a ray and a surface, or what is known behind the last one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// `Hit` for a crossing; `Tie` for each of several whose order 237 bits do not tell. The last one is a `Miss` where there
-    /// are no more, or `Undecided` where nothing is known from its lower bound on.
+    /// `Hit` for a crossing; `Tie` for each of several whose order 237 bits do not tell. The last one is a `Miss`
+    /// where there are no more, or `Undecided` where nothing is known from its lower bound on.
     pub answer: Answer,
     /// Whether the ray enters the shape there, if the shape is closed.
     pub enters: Option<bool>,
@@ -42,9 +42,9 @@ struct Known {
 }
 
 impl Query<'_> {
-    /// Returns all crossings of a ray and the scene's surfaces before a t, in the order in which the ray meets them, and last
-    /// what is known behind them: nothing from where the ray touches a surface or passes through an edge. `is_tight` narrows
-    /// all bounds with 237 bits.
+    /// Returns all crossings of a ray and the scene's surfaces before a t, in the order in which the ray meets them.
+    /// The last entry tells what is known behind them: nothing, where the ray touches a surface or passes through an
+    /// edge. `is_tight` narrows all bounds with 237 bits.
     pub fn crossings(&self, ray: &ExactRay, t_max: f64, is_tight: bool) -> Vec<Crossing> {
         let first = if is_tight { Precision::Octuple } else { Precision::Double };
         let objects = self.near(ray, f256::INFINITY);
@@ -98,8 +98,8 @@ impl Query<'_> {
     }
 }
 
-/// The bounds of the crossings of a ray and a shape, each with whether the ray enters there and the face, and the distance from
-/// which on nothing is known.
+/// The bounds of the crossings of a ray and a shape, each with whether the ray enters there and the face, and the
+/// distance from which on nothing is known.
 type Along = (Vec<(Wide, bool, Option<u32>)>, f256);
 
 /// Returns the crossings of a ray and a shape as one precision tells them.
@@ -118,8 +118,8 @@ fn along<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Along {
     }
 }
 
-/// Returns all crossings of a ray and a shape as fractions tell them, which see that a ray passes exactly through an edge;
-/// `None` where they do not tell all.
+/// Returns all crossings of a ray and a shape, found with fractions, which recognise a ray that passes exactly
+/// through an edge; `None` where they do not find all.
 fn exactly(shape: &AnyShape, ray: &ExactRay) -> Option<Along> {
     if shape.certify(ray.sight(), Precision::Octuple) == Enclosure::Misses {
         return Some((Vec::new(), f256::INFINITY));

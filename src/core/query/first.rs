@@ -9,19 +9,19 @@ use tabray_exact::interval::{Float, Wide};
 /// The objects that a ray may hit first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FirstHits {
-    /// This object, by its index, in these bounds of its distance, or nothing: for certain.
+    /// Certainly this object, by its index, with bounds of its distance, or certainly nothing.
     Certain(Option<(usize, Wide)>),
     /// One of these objects, each with what is known about its distance, in the order of their indices.
     OneOf {
         /// The objects.
         any: Vec<(usize, Enclosure)>,
-        /// A distance at which or before which something is certainly hit; infinite where perhaps nothing is.
+        /// A distance up to which something is certainly hit; infinite where perhaps nothing is.
         end: f256,
     },
 }
 
 impl FirstHits {
-    /// Tells whether an object, or nothing, may be what is hit first.
+    /// Tells whether an object may be hit first, or, for `None`, whether nothing may be hit.
     pub fn may_be(&self, found: Option<usize>) -> bool {
         match (self, found) {
             (Self::Certain(first), _) => first.map(|(index, _)| index) == found,
@@ -31,8 +31,9 @@ impl FirstHits {
     }
 }
 
-/// Proves which of some objects a ray hits first, given by their indices and shapes, and says with which precision. Distances
-/// are multiples of the length of the sight's direction. What 53 bits leave open takes 237.
+/// Proves which of some objects, given by their indices and shapes, a ray hits first. Also returns the precision of
+/// the proof: 237 bits are tried where 53 leave it open. Distances are multiples of the length of the sight's
+/// direction.
 pub fn first_of<'s>(
     objects: impl IntoIterator<Item = (usize, &'s AnyShape)>,
     sight: &Sight,
@@ -51,7 +52,7 @@ pub fn first_of<'s>(
     }
 }
 
-/// Returns a distance at which or before which a ray certainly hits one of some objects; infinite where none is known.
+/// Returns a distance up to which a ray certainly hits one of some objects; infinite where none is known.
 pub fn last_end<'s>(objects: impl IntoIterator<Item = (usize, &'s AnyShape)>, sight: &Sight) -> f256 {
     let ends = objects.into_iter().map(|(_, shape)| match shape.certify(sight, Precision::Double) {
         Enclosure::Hits(at) => at.high,

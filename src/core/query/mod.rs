@@ -1,4 +1,4 @@
-//! What rays hit, without an image: as the tracer finds it, and as it is proven.
+//! Hits of rays, without an image: as the tracer finds them, and as they are proven.
 //!
 //! ```
 //! use tabray_core::glam::DVec3;

@@ -6,22 +6,22 @@ use f256::f256;
 use glam::DVec3;
 use tabray_exact::interval::{Float, Interval, Wide};
 
-/// A ray all of whose digits count: the half-line from a point along a direction, which need not be a unit vector.
+/// A ray whose digits all count: the half-line from a point along a direction, which need not be a unit vector.
 #[derive(Clone, Debug)]
 pub struct ExactRay {
     sight: Sight,
-    /// The t of this ray at 1 of the sight, a power of 2; `None` where t counts world units.
+    /// The t of this ray at t = 1 of the sight, a power of 2; `None` where t counts world units.
     scale: Option<f64>,
 }
 
 impl ExactRay {
-    /// Returns the ray from a point along a direction, in whose lengths t is measured. `None` where the direction is 0 or
-    /// any number is not finite.
+    /// Returns the ray from a point along a direction, whose length is the unit of t. `None` where the direction is 0
+    /// or any number is not finite.
     pub fn new(origin: DVec3, dir: DVec3) -> Option<Self> {
         if !origin.is_finite() || !dir.is_finite() || dir == DVec3::ZERO {
             return None;
         }
-        // The squares of numbers as large or as small as f64 has them overflow or underflow in plain arithmetic.
+        // The squares of the largest and the smallest numbers of f64 overflow or underflow in plain arithmetic.
         let exponent = libm::ilogb(dir.abs().max_element());
         let scale = libm::scalbn(1.0, exponent.clamp(-1000, 1000));
         let scaled = dir / scale;
@@ -66,7 +66,7 @@ impl ExactRay {
             None => distance,
             Some(scale) => {
                 let [x, y, z] = self.sight.line::<f64>().dir;
-                // Scaled, so that no square overflows.
+                // Scaled, so no square overflows.
                 let largest = x.abs().max(y.abs()).max(z.abs());
                 let length = largest * (DVec3::new(x, y, z) / largest).length();
                 distance / length * scale

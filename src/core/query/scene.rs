@@ -1,4 +1,4 @@
-//! A scene that is asked what rays hit.
+//! Queries about the hits of rays in a scene.
 
 use super::answer::{Answer, Surroundings, Verdict};
 use super::first::{FirstHits, first_of, last_end};
@@ -15,13 +15,13 @@ use crate::world::hittable::SurfaceHit;
 use f256::f256;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 
-/// A scene that is asked what rays hit.
+/// A scene, prepared for queries about hits.
 pub struct Query<'m> {
     plan: Plan<'m>,
 }
 
 impl<'m> Query<'m> {
-    /// Prepares a scene: many objects get a tree. Its camera is of no importance.
+    /// Prepares a scene: many objects get a tree. The rays need not be its camera's.
     pub fn new(model: &'m Model) -> Self {
         Self { plan: Plan::new(model) }
     }
@@ -45,8 +45,8 @@ impl<'m> Query<'m> {
     /// Proves what a ray hits first. `found` is what the tracer finds, where that is known; the proof does not depend on
     /// it, but is faster with it.
     ///
-    /// A proof is about the real numbers of the scene and of the ray ([`certify`](crate::world::certify)). Where a scene has
-    /// many objects, those are left out whose bounding boxes the ray certainly misses or meets later.
+    /// A proof is about the real numbers of the scene and of the ray ([`certify`](crate::world::certify)). In a scene
+    /// with many objects, it leaves out those whose bounding boxes the ray certainly misses or meets later.
     pub fn first(&self, ray: &ExactRay, found: Option<&Hit>) -> (FirstHits, Precision) {
         let shape = |index: usize| (index, self.shape(index));
         let end = match (&self.plan.tree, found) {
@@ -56,8 +56,8 @@ impl<'m> Query<'m> {
         first_of(self.near(ray, end).into_iter().map(shape), ray.sight())
     }
 
-    /// Returns the objects that a ray may meet at or before a distance in lengths of the sight's direction, in the order of the
-    /// scene; all of them where there are few.
+    /// Returns the objects that a ray may meet at or before a distance in lengths of the sight's direction, in the
+    /// order of the scene; all of them where there are few.
     pub(super) fn near(&self, ray: &ExactRay, end: f256) -> Vec<usize> {
         let plan = &self.plan;
         let Some(tree) = &plan.tree else { return (0..plan.model.objects.len()).collect() };
@@ -91,8 +91,8 @@ impl Query<'_> {
         rays.iter().zip(self.first_hits(rays)).map(answer).collect()
     }
 
-    /// Returns what is proven about the first hits of rays. Bounds that 53 bits give are some units in the last place of t
-    /// wide; `is_tight` narrows them with 237 bits, in many times the time.
+    /// Returns what is proven about the first hits of rays. With 53 bits, bounds are some units in the last place of
+    /// t wide. `is_tight` narrows them with 237 bits, which takes many times as long.
     pub fn proven(&self, rays: &[ExactRay], is_tight: bool) -> Vec<Answer> {
         let found = self.first_hits(rays);
         rays.iter().zip(found).map(|(ray, found)| self.proof(ray, found.as_ref(), is_tight)).collect()
@@ -132,7 +132,7 @@ impl Query<'_> {
         if any.iter().all(|(_, enclosure)| matches!(enclosure, Enclosure::Hits(_))) {
             return answer(Verdict::Tie, first, Wide { low, high: end }, precision);
         }
-        // What the tracer finds is one of those in question.
+        // The tracer finds one of the objects in question.
         let (object, at) = (found.map(|hit| hit.index), Wide { low, high: end });
         let open = answer(Verdict::Undecided, object, at, precision);
         match found {
@@ -141,9 +141,9 @@ impl Query<'_> {
         }
     }
 
-    /// Returns the surface where a ray hits an object, as an answer has it; `None` for an answer without a hit. The face of a
-    /// first hit that is proven is proven, too, where the shape's faces are parts of its proofs; of faces that share an edge which
-    /// the ray passes through, it is one.
+    /// Returns the surface at the hit of an answer; `None` for an answer without a hit. If a first hit is proven, so
+    /// is its face, where the shape's faces are parts of its proofs. Where the ray passes through an edge, the face
+    /// is one of those that share the edge.
     pub fn surroundings(&self, ray: &ExactRay, answer: &Answer) -> Option<Surroundings> {
         let shape = self.shape(answer.object.filter(|_| answer.distance.is_finite())?);
         let point = ray.at(answer.distance);
@@ -160,7 +160,7 @@ impl Query<'_> {
 /// Returns the face of a shape that a ray certainly hits first, if that is the hit of an answer.
 fn face<F: Precise>(shape: &AnyShape, ray: &ExactRay, answer: &Answer) -> Option<u32> {
     let proofs = F::proofs(shape.proven()?);
-    // Most shapes have none.
+    // Most shapes have no faces.
     proofs.face_of(0)?;
     let (HitEnclosure::Hits(at), part) = proofs.first_hit(&ray.sight().line(), None) else { return None };
     let bounds = ray.t(F::widen(at).wide());
