@@ -1,4 +1,4 @@
-//! Attributes: what the rest of the program knows of them, whatever the Rust type of their values.
+//! Attributes, independent of the Rust type of their values.
 
 use crate::scene::counts::Counts;
 use crate::scene::value::{Datum, Type};
@@ -44,7 +44,7 @@ pub trait Attribute: Sync {
     fn allows(&self, datum: &Datum) -> bool;
 }
 
-/// The part of a camera's pose that an attribute gives. By this, a page can move cameras of any type.
+/// The part of a camera's pose that an attribute gives. With it, a page can move cameras of any type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pose {
     /// The point where the viewer is. A camera without a [`Target`](Self::Target) looks through an image plane that stays
@@ -54,7 +54,7 @@ pub enum Pose {
     Target,
     /// The direction that points up in the image.
     Up,
-    /// The size in world units of what the image shows, if the rays are parallel.
+    /// The size of the shown region in world units, if the rays are parallel.
     Extent,
 }
 

@@ -90,8 +90,8 @@ fn sorted<T: Choice>() -> Vec<ChoiceName> {
     all
 }
 
-/// Returns an error message for each name or number that two plugins register, with both source positions; not for the
-/// names of alternatives that are entity types.
+/// Returns an error message for each name or number that two plugins register, with both source positions. Names of
+/// alternatives that are entity types are not compared.
 pub fn contradictions<T: Choice>() -> Vec<String> {
     let all = sorted::<T>();
     let mut faults = Vec::new();

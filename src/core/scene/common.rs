@@ -1,4 +1,4 @@
-//! The attributes that all entities of a kind have beside those of their tables.
+//! The attributes that all entities of a kind have besides those of their tables.
 
 use crate::scene::pparm::{Pparm, Row, Table};
 use crate::world::accuracy::Accuracy;
@@ -9,7 +9,7 @@ use crate::world::rules::{Falloff, Rules};
 use crate::world::sample::Sampler;
 use std::sync::Arc;
 
-/// The attributes that every object has beside its own.
+/// The attributes that every object has besides its own.
 pub(super) static MATERIAL: Pparm<Arc<Material>> =
     Pparm::required("material", "the material, defined earlier in the scene");
 
@@ -21,7 +21,7 @@ pub(super) static MATERIAL_OF_ALL: Pparm<Option<Arc<Material>>> =
 
 pub(super) const OF_OBJECTS: Table = &[&MATERIAL_OF_ALL];
 
-/// An object whose own table has a `shader` has no other.
+/// An object whose own table has a `shader` does not have this one.
 pub(super) static SHADER: Pparm<Option<ShaderFactory>> = Pparm::or(
     "shader",
     "the shader that gives the look, defined earlier in the scene, or a type of shader",
@@ -45,7 +45,7 @@ pub(super) static SAMPLES: Pparm<i64> =
 pub(super) static ACCURACY: Pparm<Accuracy> =
     Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
 
-/// The rules of light; without, those of the type of camera.
+/// The rules of light; if they are not given, those of the type of camera.
 pub(super) static RULES: Pparm<Option<Rules>> = Pparm::or(
     "rules",
     "the rules of light; by default `notes` for `camera`, and `free` for the others",

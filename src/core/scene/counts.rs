@@ -68,7 +68,7 @@ impl Counts {
         }
     }
 
-    /// Says what an attribute was given instead.
+    /// Describes the number of values that an attribute was given instead.
     pub fn not(self, given: &str) -> String {
         match self {
             Self::Of(_) => given.to_owned(),

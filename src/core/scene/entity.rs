@@ -1,4 +1,4 @@
-//! Entity types: what a plugin registers, and what its constructor receives.
+//! Entity types, which plugins register, and the arguments of their constructors.
 
 pub use crate::scene::setting::{Refusal, Setting};
 
@@ -124,7 +124,7 @@ impl Entity {
         self
     }
 
-    /// Describes an object that is made of others. The attribute `material`, which may be left out, is added to its table.
+    /// Describes an object that is made of others. The optional attribute `material` is added to its table.
     #[track_caller]
     pub const fn of_objects(
         name: &'static str,
@@ -135,8 +135,8 @@ impl Entity {
         Self { common: [OF_OBJECTS, &[]], ..Self::new(name, meaning, tables, Construct::Object(construct)) }
     }
 
-    /// Describes a type of light whose distance changes nothing but the angle at which it is seen: the attributes `falloff`
-    /// and `at` are not added to its table.
+    /// Takes the attributes `falloff` and `at` from a type of light whose distance changes nothing but the angle at
+    /// which it is seen.
     pub const fn without_falloff(mut self) -> Self {
         self.common = [&[], &[]];
         self
@@ -167,7 +167,7 @@ impl Entity {
         self
     }
 
-    /// Sets what other programs call the type, in lower case.
+    /// Sets other programs' words for the type, in lower case.
     pub const fn known_as(mut self, words: &'static [&'static str]) -> Self {
         self.known_as = words;
         self
@@ -285,9 +285,8 @@ impl Args {
         self.setting.camera.accuracy
     }
 
-    /// Returns the z, in world units, beyond which planes are cut off by the scene's camera and its rules of light, if
-    /// they are. `None` for an object that others are made of: its coordinates are not the world's, and what is seen of it
-    /// ends elsewhere.
+    /// Returns the z, in world units, beyond which planes are cut off by the scene's camera and its rules of light;
+    /// `None` if they are not, and for an object that others are made of, whose coordinates are not the world's.
     pub fn planes_end_at(&self) -> Option<f64> {
         if self.is_pattern { None } else { self.setting.camera.planes_end_at() }
     }
@@ -349,7 +348,7 @@ impl Args {
         self.get(&MATERIAL)
     }
 
-    /// Returns the material that an object made of others is given, if it is given one.
+    /// Returns the material that is given to an object made of others, if there is one.
     ///
     /// # Panics
     /// If the entity is not such an object.

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::ptr;
 use std::sync::Arc;
 
-/// All that an image depends on.
+/// Everything that an image depends on.
 pub struct Model {
     /// The viewer and the image plane.
     pub camera: Item<Sensor>,
@@ -27,9 +27,10 @@ pub struct Model {
     pub textures: Vec<Item<Arc<Texture>>>,
     /// The shaders, in the order of the scene.
     pub shaders: Vec<Item<ShaderFactory>>,
-    /// The visible objects, in the order of the scene, lights that are seen among them.
+    /// The visible objects, in the order of the scene, including visible lights.
     pub objects: Vec<Object>,
-    /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.
+    /// The objects that other entities refer to, in the order of the scene. They are seen only where those entities
+    /// put them.
     pub patterns: Vec<Item<NamedBody>>,
     /// The lights, in the order of the scene, and last the background, if it lights surfaces.
     pub lights: Vec<Item<Lamp>>,
@@ -52,7 +53,7 @@ impl Model {
                 let shown = shown.filter(|record| record.entity().kind() == Kind::Object);
                 let mut all: Vec<_> = shown.chain(self.patterns.iter().map(|item| &item.args)).collect();
                 all.sort_unstable_by_key(|record| record.order());
-                // An object may be seen as several.
+                // One object may appear as several.
                 all.dedup_by_key(|record| record.order());
                 all
             }
@@ -111,9 +112,9 @@ impl Object {
         self.shape.facts().plane.is_some() && !is_bent && self.material.roughness() == 0.0
     }
 
-    /// Tells whether another object certainly has the same shape: it is of the same type, and has the same values but
-    /// for its material and its shader. The answer is `false` for objects that may be made of others, such as solids,
-    /// and for those read from files, such as meshes.
+    /// Tells whether another object certainly has the same shape: the same type, and the same values except for
+    /// material and shader. The answer is `false` for objects that may be made of others, such as solids, and for
+    /// those read from files, such as meshes.
     pub fn is_shaped_as(&self, other: &Self) -> bool {
         let entity = self.args.entity();
         if !ptr::eq(entity, other.args.entity()) || entity.reads_files() {
@@ -127,7 +128,7 @@ impl Object {
         })
     }
 
-    /// Returns a point of the surface, with what the shader sees of it, where a ray hits it on this side.
+    /// Returns the point where a ray hits the surface on this side, with the properties that the shader sees.
     pub fn surface_point(&self, position: DVec3, side: Side) -> SurfacePoint {
         let sees = self.shader.sees();
         if sees.is_position() {

@@ -24,7 +24,7 @@ pub trait Row: Sync {
     }
 }
 
-/// Rows that belong together, so that tables can be composed: a finite plane's are the plane's and its own.
+/// Rows that belong together. Tables can be composed: a finite plane has the plane's rows and its own.
 pub type Table = &'static [&'static dyn Row];
 
 /// An attribute's name, meaning, unit, default and rule, and the key to its value.
@@ -84,7 +84,7 @@ impl<T: Value> Pparm<T> {
         self
     }
 
-    /// Sets what other programs call the attribute, in lower case.
+    /// Sets other programs' words for the attribute, in lower case.
     pub const fn known_as(mut self, words: &'static [&'static str]) -> Self {
         self.known_as = words;
         self
@@ -116,7 +116,7 @@ impl<T: Value> Pparm<T> {
         self
     }
 
-    /// Sets what the values say of where a camera stands.
+    /// Sets the part of a camera's pose that the values give.
     pub const fn pose(mut self, pose: Pose) -> Self {
         self.pose = Some(pose);
         self
@@ -129,7 +129,7 @@ impl<T: Value> Pparm<T> {
         self
     }
 
-    /// Sets what the notes' dump shows instead of the value that was read.
+    /// Sets the value that the notes' dump shows, given the value that was read.
     pub const fn shown(mut self, shown: fn(T) -> T) -> Self {
         self.shown = Some(shown);
         self
@@ -150,7 +150,7 @@ impl Pparm<f64> {
 }
 
 impl Pparm<DVec3> {
-    /// Sets the rule that the vector is not zero, so that it has a direction.
+    /// Sets the rule that the vector is not zero, and so has a direction.
     pub const fn nonzero(self) -> Self {
         self.must("a nonzero vector", |vector| *vector != DVec3::ZERO)
     }
@@ -299,7 +299,7 @@ impl Attributes {
     pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
         match self.found(key).and_then(T::from_datum) {
             Some(value) => value,
-            // No closure, so that the panic message names the plugin's line.
+            // No closure, so the panic message names the plugin's line.
             None => self.not_in_table(key.name()),
         }
     }

@@ -1,5 +1,5 @@
-//! Procedural shaders as values: an object names a shader of the scene, or a type of shader, which stands for that shader
-//! with its defaults.
+//! Procedural shaders as values: an object names a shader of the scene, or a type of shader, which stands for a
+//! shader with the type's defaults.
 
 use crate::scene::attribute::Attribute;
 use crate::scene::choice::{Choice, ChoiceName, Choices};
@@ -12,7 +12,7 @@ use crate::world::body::{Body, ShaderFactory};
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
-/// Returns the shader that a type of shader stands for, with its defaults; `None` where an attribute has none.
+/// Returns the shader of a type with its defaults; `None` where an attribute has no default.
 pub fn of_type(name: &str) -> Option<&'static ShaderFactory> {
     static PAINTS: LazyLock<BTreeMap<&str, ShaderFactory>> = LazyLock::new(|| {
         let made = |entity: &'static Entity| {
@@ -30,7 +30,8 @@ pub fn types() -> impl Iterator<Item = &'static Entity> {
     inventory::iter::<Entity>().filter(|entity| has_defaults(entity))
 }
 
-/// Makes the body of an object, with the look of the shader that it names, and without what its shader cuts out.
+/// Makes the body of an object, with the look of the shader that it names, and without the parts that its shader cuts
+/// out.
 ///
 /// # Errors
 /// If the constructor refuses the object.
@@ -55,7 +56,7 @@ fn has_defaults(entity: &Entity) -> bool {
         && entity.attributes().all(|attribute| attribute.default().is_some())
 }
 
-/// A shader, chosen by its name or by its number: that on planes for 0, on spheres for 1.
+/// A shader, chosen by its name or by its number: `ON` is 0 for numbers on planes, and 1 for numbers on spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ByNumber<const ON: usize> {
     /// The shader that a scene chooses.

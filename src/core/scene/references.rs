@@ -1,4 +1,4 @@
-//! What a scene refers to by name, as values of attributes.
+//! Entities that a scene refers to by name, as values of attributes.
 
 use crate::scene::kind::Kind;
 use crate::scene::value::{Datum, Type, one_word};

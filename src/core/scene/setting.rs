@@ -1,4 +1,4 @@
-//! What a constructor may know of the scene around an entity, and how it refuses its values.
+//! The scene around an entity, for its constructor, and the refusal of values.
 
 use crate::world::material::Material;
 use crate::world::sensor::Sensor;
@@ -16,9 +16,9 @@ pub struct Setting {
     pub folder: PathBuf,
     /// The scene's materials by their names; only objects and lights are certain to see all of them.
     pub materials: Arc<BTreeMap<String, Arc<Material>>>,
-    /// Whether only rays are asked about, so that the looks of objects are of no interest.
+    /// Whether only hits of rays are asked for, and the looks of objects do not matter.
     pub only_rays: bool,
-    /// The memory that an object may take beside the scene, in bytes.
+    /// The memory that an object may take in addition to the scene, in bytes.
     pub memory: u64,
 }
 

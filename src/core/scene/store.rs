@@ -1,5 +1,5 @@
-//! The entities of a scene as they were given, packed: a scene may have millions, and all that a render needs of most of
-//! them is their names.
+//! The entities of a scene as they were given, packed. A scene may have millions of them, and a render needs only the
+//! names of most.
 
 use crate::scene::entity::{Args, Entity, Setting};
 use crate::scene::pparm::AttributeValue;
@@ -9,10 +9,10 @@ use std::mem::take;
 use std::ptr;
 use std::sync::Arc;
 
-/// The number of entities that are packed into one piece of memory. The pieces are as long as what is in them.
+/// The number of entities that are packed into one piece of memory. A piece is no longer than its contents.
 const TOGETHER: usize = 1 << 10;
 
-/// What is packed of an attribute: that it has its default, how many numbers follow, or the index of a datum.
+/// The packed form of an attribute: its default, the count of the numbers that follow, or the index of a datum.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Tag {
     Default,
@@ -25,11 +25,11 @@ enum Tag {
 /// text.
 #[derive(Default)]
 pub struct Store {
-    /// What constructors may know of the scene.
+    /// The parts of the scene that constructors may know.
     pub setting: Arc<Setting>,
     /// The types of the entities.
     types: Vec<&'static Entity>,
-    /// The values that are not numbers. Entities that follow each other share them.
+    /// The values that are not numbers. Consecutive entities share them.
     data: Vec<Datum>,
     blocks: Vec<Block>,
     /// The bytes of the entities that do not fill a block, and where each of them begins.
@@ -69,7 +69,7 @@ impl Store {
         self.end(start);
     }
 
-    /// Adds an entity that was packed before; none of its type may be the first.
+    /// Adds an entity that was packed before. The first entity of a type is not added in this way.
     pub fn add_packed(&mut self, packed: &[u8]) {
         let start = self.bytes.len();
         self.bytes.extend_from_slice(packed);
@@ -96,7 +96,7 @@ impl Store {
         self.types.iter().position(|known| ptr::eq(*known, entity))
     }
 
-    /// Returns the index of a datum, and keeps the datum if it is not one of those that were needed last.
+    /// Returns the index of a datum, and stores the datum unless it is among the most recent ones.
     pub fn index(&mut self, datum: &Datum) -> u32 {
         let recent = self.data.len().saturating_sub(4)..self.data.len();
         let known = recent.rev().find(|index| self.data[*index].is_same(datum));
@@ -147,7 +147,7 @@ impl Store {
         }
     }
 
-    /// Returns an entity with its values, or with defaults where those are faulty.
+    /// Returns an entity with its values, or with defaults where its values are faulty.
     ///
     /// # Panics
     /// If the entity's type is unknown.
@@ -158,7 +158,8 @@ impl Store {
         args
     }
 
-    /// Returns an entity with its values as [`args`](Self::args) does, in the memory of another one if there is one.
+    /// Returns an entity with its values as [`args`](Self::args) does, and reuses the memory of another one if there
+    /// is one.
     pub fn args_in<'m>(&self, order: usize, memory: &'m mut Option<Args>) -> &'m Args {
         match memory {
             Some(args) => {
@@ -169,7 +170,7 @@ impl Store {
         }
     }
 
-    /// Makes `args` those of another entity. What both have in common stays where it is in memory.
+    /// Makes `args` those of another entity. Parts that both have in common keep their memory.
     fn read(&self, order: usize, args: &mut Args) {
         let mut packed = self.packed(order);
         let Some((number, _)) = packed.kind() else { return };
@@ -269,8 +270,8 @@ impl<'b> Packer<'b> {
         self.count(4 * count as usize + kind);
     }
 
-    /// Adds a whole number in as few bytes as it takes: seven bits in each, from the lowest on, and a bit that tells
-    /// whether more follow (LEB128).
+    /// Adds an integer in LEB128: seven bits in each byte, from the lowest on, and a bit that tells whether more
+    /// follow.
     fn count(&mut self, mut count: usize) {
         while count >= 0x80 {
             self.0.push(count as u8 | 0x80);
@@ -369,7 +370,7 @@ impl Record {
         self.store.args(self.order())
     }
 
-    /// Returns the entity with all its values, in the memory of another one of the same model.
+    /// Returns the entity with all its values, and reuses the memory of another one of the same model.
     pub fn args_in<'m>(&self, memory: &'m mut Option<Args>) -> &'m Args {
         self.store.args_in(self.order(), memory)
     }

@@ -1,4 +1,4 @@
-//! The types of attribute values that the scene language has.
+//! The types of attribute values in the scene language.
 
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
@@ -143,7 +143,7 @@ pub trait Value: Clone + Send + Sync + 'static {
     fn from_datum(datum: &Datum) -> Option<Self>;
 }
 
-/// Makes a type a value that takes one word: of which type, and how it is made to a datum and from one.
+/// Implements [`Value`] for a type of one word, given its [`Type`] and its conversions to a datum and from one.
 macro_rules! one_word {
     ($(#[$doc:meta])* $Value:ty, $type:expr, $value:ident => $datum:expr, $($from:pat $(if $fits:expr)? => $to:expr),+) => {
         $(#[$doc])*
@@ -167,7 +167,7 @@ macro_rules! one_word {
 }
 pub(crate) use one_word;
 
-/// Makes a type the value that an array of numbers is.
+/// Implements [`Value`] for a type, by its conversions to an array of numbers and from one.
 macro_rules! of_array {
     ($Value:ty, $type:ident, $Array:ty, $names:expr, $value:ident => $array:expr, $from:expr) => {
         impl Value for $Value {
@@ -229,7 +229,7 @@ impl Value for WholePerChannel {
     }
 }
 
-/// Makes arrays of numbers values.
+/// Implements [`Value`] for arrays of numbers.
 macro_rules! numbers {
     ($Number:ty, $type:ident, $datum:ident) => {
         impl<const N: usize> Value for [$Number; N] {
