@@ -3,7 +3,7 @@
 use glam::DVec3;
 use std::ops::Range;
 
-/// The number of lanes that kernels take at a time; arrays are as long as a multiple of it.
+/// The number of lanes that kernels take at a time. The lengths of arrays are multiples of it.
 pub use tabray_exact::f64x8::LANES;
 
 /// Vectors as one array per coordinate.
