@@ -1,4 +1,5 @@
-//! Defines a shape by one formula, asks it where a ray hits it, and draws it: `cargo run -p tabray-core --example torus`.
+//! Defines a shape by one formula, finds where a ray hits it, and draws it:
+//! `cargo run -p tabray-core --example torus`.
 
 use std::fmt::Write;
 use tabray_core::prelude::*;
