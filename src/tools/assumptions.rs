@@ -1,4 +1,4 @@
-//! What the proofs about a scene assume, and which of its shapes they say nothing about.
+//! The assumptions of proofs about a scene, and the shapes about which proofs say nothing.
 
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -12,14 +12,14 @@ use tabray_core::world::certify::{Assumption, Premise};
 /// An assumption of the proofs about a scene.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Assumed {
-    /// What is taken for exact.
+    /// The numbers that are taken as exact.
     #[serde(serialize_with = "displayed")]
     pub assumed: Assumption,
     /// The types of the entities whose numbers these are, in the order of the scene.
     pub of: Vec<&'static str>,
 }
 
-/// Displays what is assumed, and of which entities.
+/// Displays the assumption, and the entity types that it is about.
 impl fmt::Display for Assumed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} ({})", self.assumed, text::list(self.of.iter().copied()))
@@ -50,8 +50,8 @@ pub fn of(plan: &Plan, for_colours: bool) -> Vec<Assumed> {
     all.into_iter().map(|(assumed, of)| Assumed { assumed, of }).collect()
 }
 
-/// Lists the types of shapes about whose hits nothing is proven but that they lie in their bounds, in the order of the
-/// scene.
+/// Lists the types of shapes without an equation, in the order of the scene. Of their hits, only the bounds are
+/// proven.
 pub fn uncertified(model: &Model) -> Vec<&'static str> {
     let mut types = Vec::new();
     each_premise(model, &mut |of, premise| {
@@ -62,7 +62,7 @@ pub fn uncertified(model: &Model) -> Vec<&'static str> {
     types
 }
 
-/// Passes on what proofs about each object of a scene start from, with the entity type that it is about.
+/// Passes on the premises of proofs about each object of a scene, each with its entity type.
 fn each_premise(model: &Model, each: &mut dyn FnMut(&'static str, Premise)) {
     for Object { shape, args, .. } in &model.objects {
         shape.premises(args.entity().name, each);

@@ -14,7 +14,7 @@ use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
 use tabray_core::world::sensor::Adaptive;
 
-/// The number of independent images that the true colours are the mean of, and of the samples per pixel of each.
+/// The number of independent images whose mean gives the true colours, and the number of samples per pixel of each.
 const IMAGES: u32 = 8;
 const SAMPLES: u32 = 512;
 
@@ -22,7 +22,7 @@ const SAMPLES: u32 = 512;
 /// normally distributed numbers, one in a million is farther off.
 const IMPOSSIBLE: f64 = 16.0;
 
-/// A colour as samples have it, as it is shown, and the standard error of each channel.
+/// The shown colour of a pixel, as samples estimate it, and the standard error of each channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sampled {
     colour: Rgb,
@@ -36,7 +36,7 @@ pub struct Outcome {
     pub certified: f64,
     /// The greatest difference of a certified pixel from the samples.
     pub worst: f64,
-    /// The number of pixels that differ from the samples by more than what is proven and what the samples may be off.
+    /// The number of pixels that differ from the samples by more than the proven bound and the error of the samples.
     pub contradicted: usize,
     /// The mean and the greatest bound of the other pixels.
     pub open: [f64; 2],
@@ -85,7 +85,7 @@ pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
     sums.iter().zip(&squares).map(sampled).collect()
 }
 
-/// Collects what is proven of pixels, in their order.
+/// Collects the proven bounds of pixels, in their order.
 #[derive(Default)]
 struct Bounds(Vec<PixelBound>);
 

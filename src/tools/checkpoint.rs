@@ -1,4 +1,4 @@
-//! Checkpoints: what is finished of an image or of a part of one, in a file from which a later render continues.
+//! Checkpoints: the finished parts of an image or of a part of one, in a file from which a later render continues.
 //!
 //! A checkpoint is a PNG whose pixels are opaque where they are rendered and transparent elsewhere. A text chunk says
 //! what the image depends on.
@@ -28,8 +28,8 @@ use tabray_lang::syntax::Syntax;
 /// The keyword of the text chunk.
 const KEYWORD: &str = "tabray checkpoint";
 
-/// All that the pixels of an image depend on; the text chunk is its JSON. A field that another version did not write is
-/// empty.
+/// Everything that the pixels of an image depend on; the text chunk is its JSON. A field that another version did not
+/// write is empty.
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Identity {
@@ -40,7 +40,7 @@ pub struct Identity {
     crop: Option<[usize; 4]>,
     /// The hash of the program's file. It changes with each build, because plugins are part of the program.
     program: String,
-    /// The hashes of what objects were read from files of their own, by the types and names of the objects.
+    /// The hashes of the files that objects were read from, by the types and names of the objects.
     files: BTreeMap<String, String>,
     /// The name of the sampler.
     sampler: String,
@@ -49,10 +49,10 @@ pub struct Identity {
     exposure: Option<f64>,
     /// The number of samples per pixel.
     samples: u32,
-    /// The maximum number of samples per pixel, if pixels differ in that, and what they need more for.
+    /// The maximum number of samples per pixel, and the reason for more samples, if pixels differ in their numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     more_samples: Option<String>,
-    /// The hash of the scene's dump, or rather of the hashes of its parts.
+    /// The hash of the hashes of the parts of the scene's dump.
     scene: String,
     /// The width and the height of the image in pixels.
     size: [usize; 2],
@@ -107,7 +107,7 @@ impl Identity {
         Self { tiles: Some([*start, *end]), ..self }
     }
 
-    /// Tells whether this build of the program has made it.
+    /// Tells whether this build of the program has made the checkpoint.
     ///
     /// # Errors
     /// If the program cannot read its own file.
@@ -194,8 +194,8 @@ fn scene(model: &Model) -> String {
     shown(hashes.iter().fold(Sha256::new(), |all, hash| all.chain_update(hash)))
 }
 
-/// Hashes what a scene gives of an entity: numbers as they are, which is much faster than as text, and all else as in a
-/// dump. The length of each part comes before it.
+/// Hashes the given values of an entity: numbers by their bytes, which is much faster than as text, and all else as
+/// in a dump. The length of each part comes before it.
 fn add(hasher: &mut Sha256, args: &Args) {
     let mut part = |bytes: &[u8]| {
         hasher.update((bytes.len() as u64).to_le_bytes());
@@ -236,8 +236,8 @@ fn shown(hasher: Sha256) -> String {
     text::sha256(&hasher.finalize())
 }
 
-/// Writes a checkpoint of the top of an image, with this number of columns and rows. `next` fills in the bytes of one row
-/// after the other, whether they are rendered or not.
+/// Writes a checkpoint of the top of an image, with this number of columns and rows. `next` fills in the bytes of one
+/// row after the other, whether they are rendered or not.
 ///
 /// # Errors
 /// Returns the errors of `out` and `next`, and an error where a PNG cannot have the size.
@@ -274,7 +274,7 @@ pub struct Checkpoint {
     /// The settings and inputs on which the checkpoint's image depends.
     pub identity: Identity,
     png: png::Reader<BufReader<File>>,
-    /// The number of columns, which may be wrong until [`fits`](Self::fits) is asked.
+    /// The number of columns, which is checked only by [`fits`](Self::fits).
     width: usize,
     /// The number of rows that are still to be read.
     rows: usize,

@@ -1,6 +1,6 @@
 //! Proves the colours of pixels: encloses each channel in an interval, and compares the bytes with those of the image.
 //!
-//! What an interval leaves open widens the colour, or opens the pixel.
+//! A decision that intervals leave open widens the colour, or opens the pixel.
 
 use f256::f256;
 use std::cell::Cell;
@@ -19,8 +19,8 @@ use tabray_core::world::material::Rgb;
 use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// How far rays are followed: branches are left out that no byte is likely to notice, and those that are open by a level
-/// open the pixel.
+/// The limits for following rays: branches that no byte is likely to notice are left out, and those that are open by
+/// a level open the pixel.
 fn limits<F: Float>() -> Limits {
     // An operation with many digits takes a hundred times as long.
     let fewer = if F::IS_LONG { 10 } else { 1 };
@@ -33,15 +33,15 @@ fn limits<F: Float>() -> Limits {
 pub enum Verdict {
     /// The byte is that of the true colour.
     Proven,
-    /// The byte is not that of the true colour, but `f64` does not tell: the true ray passes through an edge, or the true
-    /// level is a whole number, up to rounding. An enclosure in `f64` holds the byte.
+    /// The byte is not that of the true colour, but `f64` does not tell: the true ray passes through an edge, or the
+    /// true level is an integer, up to rounding. An enclosure in `f64` contains the byte.
     Rounded,
-    /// The enclosure of the true colour holds several bytes, or the colour is not known.
+    /// The enclosure of the true colour contains several bytes, or the colour is not known.
     #[default]
     Open,
     /// The byte is open because a ray may meet a shape without an equation.
     Uncertified,
-    /// No enclosure of the true colour holds the byte.
+    /// No enclosure of the true colour contains the byte.
     Contradicted,
 }
 
@@ -89,7 +89,7 @@ struct Enclosed<F: Endpoint> {
 }
 
 impl Attempt {
-    /// Returns a verdict that says what it is open for.
+    /// Returns a verdict that names the reason why it is open.
     fn named(&self, verdict: Verdict) -> Verdict {
         if verdict == Verdict::Open && self.meets_uncertified { Verdict::Uncertified } else { verdict }
     }
@@ -138,7 +138,8 @@ impl<'p, 'm> Prover<'p, 'm> {
             return Attempt { pixel, is_enclosed: false, is_final: is_spent, meets_uncertified };
         };
         let (display, leaves_out) = (self.plan.camera.display(), self.plan.depth.is_some());
-        // Rays may be left out that add less than this to a pixel, and under the free rules change it by fewer levels.
+        // Rays may be left out that add less than `FAINT` to a pixel, or under the free rules change it by less than
+        // `MOST_OFF`.
         let (missing, off) = if leaves_out { (FAINT, MOST_OFF) } else { (0.0, 0.0) };
         let possible = match display.truncates() {
             Some(_) => colour.map(|channel| truncated(channel, missing)),
@@ -202,12 +203,12 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 }
 
-/// The bytes that a channel may be: the least of an image that leaves out rays, the least and the greatest of one that does
-/// not, and the greatest of one that leaves out rays.
+/// The bytes that a channel may be: the least of an image that leaves out rays, the least and the greatest of one
+/// that does not, and the greatest of one that leaves out rays.
 type Possible = [u8; 4];
 
-/// The most levels by which an image of the free rules is off where rays are left out: the middle of bounds up to a level
-/// apart is shown.
+/// The most levels by which an image of the free rules is off where rays are left out: the middle of bounds that are
+/// up to a level apart is shown.
 const MOST_OFF: f64 = 0.5;
 
 /// Returns the bytes of a channel under the notes' rules. `missing` is the most that the image may lack.
@@ -219,7 +220,7 @@ fn truncated<F: Float>(channel: Interval<F>, missing: f64) -> Possible {
 
 /// Returns the bytes of a colour under the free rules. `off` is the number of levels that the image may be off.
 fn rounded<F: Float>(display: &Display, colour: &Colour<Interval<F>>, off: f64) -> [Possible; 3] {
-    // More than the rounding of a level to `f64`, and of its code.
+    // An upper limit on the rounding errors of a level in `f64`, and of its code.
     const OFF: f64 = 1e-9;
     let end = |of: fn(&Interval<F>) -> F| Rgb::from_array(per_axis(|channel| of(&colour[channel]).to_f64()));
     let (low, high) = (end(|channel| channel.low), end(|channel| channel.high));

@@ -1,4 +1,4 @@
-//! Moves a camera around a point: orbit, pan and dolly, for every type of camera whose table says where it stands.
+//! Moves a camera around a point: orbit, pan and dolly, for every type of camera whose table gives its pose.
 
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
@@ -7,29 +7,30 @@ use tabray_core::scene::entity::{Args, Construct};
 use tabray_core::scene::value::Datum;
 use tabray_core::world::sensor::Sensor;
 
-/// The greatest angle in degrees by which a viewer who goes up or down looks down or up: straight up and down, there would
-/// be no side of the image at which `up` is.
+/// The greatest angle in degrees by which a viewer who goes up or down looks down or up: straight up and down, no
+/// side of the image would be `up`.
 const MOST_ELEVATION: f64 = 89.0;
 
-/// The number of digits before which a coordinate is rounded, counted from the first one of the viewer's distance from
-/// the point: less than a pixel of an image.
+/// The number of digits to which a coordinate is rounded, counted from the first one of the viewer's distance from
+/// the point: the rounding is less than a pixel of an image.
 const DIGITS: i32 = 5;
 
-/// A movement of a camera, from where it stands.
+/// A movement of a camera from its pose.
 #[derive(Clone, Copy, Debug)]
 pub struct Movement {
-    /// By how many degrees what is seen turns: to the right, and up.
+    /// The angles, in degrees, by which the visible scene turns: to the right, and up.
     pub orbit: [f64; 2],
-    /// By how many pixels what is seen moves: to the right, and up.
+    /// The numbers of pixels by which the visible scene moves: to the right, and up.
     pub pan: [f64; 2],
-    /// By what the distance from the point is divided.
+    /// The divisor of the distance from the point.
     pub dolly: f64,
 }
 
 /// The pose of a camera: the values of those attributes that a movement changes, by their names.
 pub type CameraPose = BTreeMap<String, Vec<f64>>;
 
-/// Lists the attributes of a camera that a movement may change, with what they say. Other things have none.
+/// Lists the attributes of a camera that a movement may change, with their parts of the pose. Other entities have
+/// none.
 pub fn attributes(camera: &Args) -> impl Iterator<Item = (&'static dyn Attribute, Pose)> {
     let poses = camera.values().filter_map(|(attribute, _)| Some((attribute, attribute.pose()?)));
     poses.filter(|(_, pose)| *pose != Pose::Up)
@@ -44,12 +45,12 @@ pub fn camera_pose(camera: &Args) -> CameraPose {
     attributes(camera).filter_map(values).collect()
 }
 
-/// Moves a camera that stands there around a point, and returns where it stands then; `None` where its table or its
-/// constructor does not allow that.
+/// Moves a camera from a pose around a point, and returns its new pose; `None` where its table or its constructor
+/// does not allow that.
 ///
-/// A viewer goes around the point at the same distance, and stays upright. What is seen moves with the hand: a camera
-/// with a target goes the other way. A viewer before an image plane that stays goes with the hand, as that moves what is
-/// behind the image plane.
+/// A viewer goes around the point at the same distance, and stays upright. The visible scene moves with the hand: a
+/// camera with a target goes the other way. A viewer before a fixed image plane goes with the hand, as that moves the
+/// scene behind the image plane.
 pub fn moved(camera: &Args, from: &CameraPose, movement: &Movement, pivot: DVec3) -> Option<CameraPose> {
     let is_in_front = |camera: &Args| point(camera, Pose::Position).is_some_and(|at| at.z > 0.0);
     let mut camera = camera.clone();
@@ -57,11 +58,11 @@ pub fn moved(camera: &Args, from: &CameraPose, movement: &Movement, pivot: DVec3
     let before = is_in_front(&camera);
     let after = OrbitCamera::of(&camera, &sensor, pivot)?.moved(movement);
     placed(&mut camera, &after)?;
-    // Through an image plane that stays, the viewer would look back.
+    // Through a fixed image plane, the viewer would look back.
     (!is_window(&camera) || is_in_front(&camera) == before).then_some(after)
 }
 
-/// Returns the sensor of a camera that is put where it stands then.
+/// Returns the sensor of a camera in a pose.
 fn placed(camera: &mut Args, pose: &CameraPose) -> Option<Sensor> {
     for (attribute, datum, is_given) in camera.values_mut() {
         let Some(values) = pose.get(attribute.name()) else { continue };
@@ -106,7 +107,7 @@ impl<'c> OrbitCamera<'c> {
         Some(Self { camera, pivot, position, target, is_parallel, forward, up, pixel })
     }
 
-    /// Returns where the camera stands after a movement.
+    /// Returns the camera's pose after a movement.
     fn moved(&self, movement: &Movement) -> CameraPose {
         let hand = if self.target.is_some() { -1.0 } else { 1.0 };
         let [turn, rise] = movement.orbit.map(|degrees| hand * degrees);
@@ -121,7 +122,7 @@ impl<'c> OrbitCamera<'c> {
             if !self.is_parallel {
                 return self.pivot + (point - self.pivot) / movement.dolly;
             }
-            // Parallel rays show things as large from anywhere, but what is behind their start is not seen.
+            // Parallel rays show things in the same size from anywhere, but not those behind the rays' start.
             let aside = (self.pivot - self.position).reject_from_normalized(self.forward);
             point + aside * (1.0 - 1.0 / movement.dolly)
         };
@@ -146,7 +147,8 @@ impl<'c> OrbitCamera<'c> {
     }
 }
 
-/// Rounds a number before the last of the digits that a size has, unless it is as good as what it was before.
+/// Rounds a number to the last of the digits of a size. If it hardly differs from the number before, that one is
+/// kept.
 fn rounded(value: f64, before: f64, size: f64) -> f64 {
     let exponent = |of: f64| libm::log10(of.abs()).floor() as i32;
     if !size.is_normal() || !value.is_normal() {
@@ -175,7 +177,7 @@ pub fn is_window(camera: &Args) -> bool {
     point(camera, Pose::Position).is_some() && point(camera, Pose::Target).is_none()
 }
 
-/// Returns the vector that a camera's attribute with this meaning gives.
+/// Returns the vector that gives this part of a camera's pose.
 fn point(camera: &Args, wanted: Pose) -> Option<DVec3> {
     let (_, datum) = camera.values().find(|(attribute, _)| attribute.pose() == Some(wanted))?;
     match datum {

@@ -1,7 +1,7 @@
-//! Parts of images: the pixels of some tiles, in a file from which the image is put together.
+//! Parts of images: the pixels of some tiles, in a file from which the image is assembled.
 //!
-//! A file is a line that says what it is, a line of JSON, the [`Label`], the pixels, and the SHA-256 of all that. The
-//! pixels come tile by tile, and in a tile in rows from the top.
+//! A file consists of a line that names the format, a line of JSON (the [`Label`]), the pixels, and the SHA-256 of
+//! all that. The pixels come tile by tile, and in a tile in rows from the top.
 
 use crate::checkpoint::Identity;
 use serde::{Deserialize, Serialize};
@@ -41,8 +41,8 @@ pub enum PixelFormat {
     Exr,
     /// Pixels of a PFM: three numbers of 32 bits each.
     Pfm,
-    /// Pixels of an image beside the main one, which is a PNG with this compression, or else a PPM: three numbers of 64
-    /// bits each.
+    /// Pixels of an auxiliary image, which is a PNG with this compression, or else a PPM: three numbers of 64 bits
+    /// each.
     Beside(Aov, #[serde(with = "by_name")] Option<Compression>, Setting),
 }
 
@@ -119,7 +119,7 @@ impl PixelFormat {
 /// The label of a part: the image that it belongs to, and which of its parts it is.
 #[derive(Serialize, Deserialize)]
 pub struct Label {
-    /// The number of the part, from 1, and of how many.
+    /// The number of the part, from 1, and the number of parts.
     pub part: [usize; 2],
     /// The first of its tiles, and the first of the next part.
     pub tiles: [usize; 2],
@@ -127,7 +127,7 @@ pub struct Label {
     pub size: [usize; 2],
     /// The format of the pixels.
     pub what: PixelFormat,
-    /// The images beside the main one, which have parts of their own.
+    /// The auxiliary images, which have parts of their own.
     pub beside: Vec<Aov>,
     /// The settings and inputs on which the pixels depend.
     pub identity: Identity,
@@ -146,7 +146,7 @@ impl Label {
         self.tiles[0]..self.tiles[1]
     }
 
-    /// Tells whether the numbers can be those of a part.
+    /// Tells whether the label can be that of a part.
     fn is_sound(&self) -> bool {
         let [number, of] = self.part;
         let pixels = self.size[0].checked_mul(self.size[1]);
@@ -277,7 +277,7 @@ impl Reader {
         }
     }
 
-    /// Reads all that is left, to see whether it is whole.
+    /// Reads the rest, to check that it is whole.
     ///
     /// # Errors
     /// Returns the errors of [`read`](Self::read).
@@ -317,14 +317,14 @@ pub fn take_tile(
     }
 }
 
-/// Copies the bytes of a tile to where [`take_tile`] takes them from.
+/// Copies the bytes of a tile to the place from which [`take_tile`] takes them.
 fn put_tile(image: &mut [u8], row: usize, [columns, rows]: [Range<usize>; 2], pixel: usize, tile: &[u8]) {
     for (at, bytes) in rows.zip(tile.chunks(pixel * columns.len())) {
         image[row * at..][pixel * columns.start..pixel * columns.end].copy_from_slice(bytes);
     }
 }
 
-/// Puts tiles together: returns the bytes of each row of tiles that has some of them, from the top, 0 where there are no
+/// Assembles tiles: returns the bytes of each row of tiles that has some of them, from the top, 0 in place of the
 /// others. `read` reads the bytes of the next tile, given its index.
 pub fn strips<E>(
     grid: Grid,

@@ -1,4 +1,4 @@
-//! Measures what numbers of samples per pixel cost, and how wrong they leave an image.
+//! Measures the cost of numbers of samples per pixel, and the errors that they leave in an image.
 
 use crate::bench::clock;
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,7 @@ impl Samples {
     }
 }
 
-/// The cost and the error of a number of samples. Errors are in levels of 1/255, of colours as they are shown but not
+/// The cost and the error of a number of samples. Errors are in levels of 1/255, of shown colours that are not
 /// rounded to levels.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Measured {
@@ -55,7 +55,7 @@ pub struct Measured {
 /// The errors in levels for which [`Measured::within`] counts pixels.
 pub const LEVELS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// Renders the colours of a model with so many samples per pixel that they count as true, on all threads.
+/// Renders the colours of a model on all threads, with enough samples per pixel to count as true.
 pub fn truth(renderer: &Renderer, model: &mut Model, samples: u32) -> Vec<Rgb> {
     let camera = &mut model.camera.value;
     (camera.samples, camera.adaptive, camera.sampler) = (samples, None, Sampler::Sobol);

@@ -23,16 +23,16 @@ pub enum Verdict {
     Contradicted,
 }
 
-/// A pixel, and what is known of it.
+/// A pixel, and the verdict on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pixel {
-    /// What is proven.
+    /// The verdict.
     pub verdict: Verdict,
     /// The index of the object that the tracer finds, where it finds one.
     pub object: Option<usize>,
 }
 
-/// Returns what is known of a pixel: `x` counts from the left, `y` from the bottom.
+/// Returns the verdict on a pixel: `x` counts from the left, `y` from the bottom.
 pub fn pixel(plan: &Plan, x: usize, y: usize) -> Pixel {
     let sight = plan.camera.sight(x as f64, y as f64);
     let found = trace::first_hit(plan, &sight).map(|hit| hit.index);
@@ -49,7 +49,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Pixel {
     Pixel { verdict, object: found }
 }
 
-/// Returns what is known of all pixels, row by row from the top. `done` is called after each row, and may break off.
+/// Returns the verdicts on all pixels, row by row from the top. `done` is called after each row, and may break off.
 ///
 /// # Errors
 /// `Interrupted` if `done` broke off.

@@ -7,7 +7,7 @@ use tabray_core::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use tabray_core::simd::cpu::{Cpu, kernels};
 use tabray_core::simd::soa::Vectors;
 
-/// The number of shapes in a round, so that the compiler cannot hoist their constants out of the loop.
+/// The number of shapes in a round. With several, the compiler cannot hoist their constants out of the loop.
 const SHAPES: usize = 8;
 
 /// A textbook intersection test.

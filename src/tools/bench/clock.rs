@@ -1,9 +1,8 @@
-//! The duration of work in CPU time of the thread that does it, so that other work of the machine hardly counts.
+//! The duration of work, in CPU time of the thread that does it. Other work of the machine hardly counts.
 
 use std::time::Duration;
 
-/// The shortest duration that is measured. Shorter work is repeated, so that the cost of reading the clock does not
-/// count.
+/// The shortest duration that is measured. Shorter work is repeated, so the cost of reading the clock does not count.
 const MIN_DURATION: Duration = Duration::from_micros(200);
 
 /// Returns the CPU time that this thread has used so far.
@@ -40,7 +39,7 @@ pub fn now() -> Duration {
 }
 
 /// Returns the least time of each of several pieces of work, in seconds. They take turns for about as long as
-/// `patience`, and three times at least, so that a machine that becomes slower slows down all of them.
+/// `patience`, and at least three times: a machine that becomes slower slows down all of them.
 pub fn least<const N: usize>(patience: Duration, works: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut works = works.map(|work| {
         let repeats = MIN_DURATION.as_nanos().div_ceil(time(work, 1).as_nanos().max(1));

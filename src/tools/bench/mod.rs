@@ -133,7 +133,7 @@ impl Speed {
     }
 }
 
-/// Renders a frame into a buffer that is reused, so that the allocation of memory is not measured.
+/// Renders a frame into a buffer that is reused, so memory allocation is not measured.
 fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
     let [width, height] = plan.camera.pixels;
     for rows in Band::split(&(0..width), &(0..height), BAND) {

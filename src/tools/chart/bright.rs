@@ -12,7 +12,7 @@ const CUTS: u32 = 5;
 /// The greatest number of cells of a pixel.
 const CELLS: usize = 16;
 
-/// The part of a square's bound that the largest of its quarters' bounds must be below if cutting is of use.
+/// Cutting a square is of use if the largest bound of its quarters is below this part of its own bound.
 const BETTER: f64 = 0.9;
 
 /// A square part of a pixel that may show something bright.
@@ -40,12 +40,12 @@ pub(super) struct Bounds<'b> {
     pub camera: &'b Sensor,
     /// The brightness up to which nothing counts as small.
     pub bright: f64,
-    /// The brightness that stands for one that is not bounded.
+    /// The brightness that stands for an unbounded one.
     pub unbounded: f64,
 }
 
-/// Returns the brightness of what mirrors and glass may show of one surface, where nothing bounds what they add: a scene
-/// that has nothing bright shows nothing bright in them.
+/// Returns the brightness of a surface that mirrors and glass may show, where nothing bounds their light: a scene
+/// without bright surfaces shows nothing bright in them.
 pub(super) fn unbounded(plan: &Plan) -> f64 {
     let Some(depth) = &plan.depth else { return f64::INFINITY };
     let viewer = plan.camera.origins();
@@ -85,7 +85,7 @@ impl Bounds<'_> {
         (most > self.bright).then_some(Cell { middle, half, most })
     }
 
-    /// Returns the parts of a pixel in which something bright must be, if anywhere.
+    /// Returns the parts of a pixel that may show something bright.
     pub fn cut(&self, whole: Cell) -> Vec<Cell> {
         let mut cells = vec![whole];
         for _ in 0..CUTS {

@@ -19,8 +19,8 @@ pub struct Candidate {
     /// The accuracy, where a scene can choose it.
     pub accuracy: Option<Accuracy>,
     pub is_default: bool,
-    /// The greatest error of a hit's distance, or of its distance from the surface, that the method allows itself beside
-    /// rounding, in world units.
+    /// The greatest error of a hit's distance, or of its distance from the surface, that the method allows itself
+    /// besides rounding, in world units.
     pub promise: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The choice that is likely to meet a goal, measured on so many pixels that it certainly does.
+//! Confirms the choice that is likely to meet a goal, on enough pixels to be certain.
 //!
 //! A bound that holds whatever the unmeasured pixels contain needs many measured pixels. Few samples in each suffice,
 //! in addition to those of the choice itself, since their noise is as often too high as too low.
@@ -19,11 +19,12 @@ use tabray_core::scene::model::Model;
 /// The part of the greatest error that an estimate must be below to be worth confirming.
 const LIKELY: f64 = 0.9;
 
-/// The ratio of the rays of a choice where pixels take different numbers to those of the fixed one, from which on it is worth
-/// taking.
+/// A choice with different numbers of samples is worth taking if its rays are at most this part of those of the fixed
+/// choice.
 const GAIN: f64 = 0.8;
 
-/// The pixels that are measured at once, and the part of those so far that is added before the bound is computed again.
+/// The number of pixels that are measured at once, and the fraction by which their number grows before the bound is
+/// computed again.
 const AT_ONCE: usize = 4096;
 const AGAIN: f64 = 0.5;
 
@@ -33,13 +34,13 @@ const RIGHT: [u32; 4] = [4, 8, 16, 32];
 const NOISE: f64 = 0.1;
 const HOPELESS: usize = 16_384;
 
-/// The least number of samples of a pixel that is measured, with that of its own.
+/// The least number of samples of a measured pixel: those that count as right, and one of its own.
 pub(super) const FEWEST: u32 = 2 * RIGHT[0] + 1;
 
-/// The rays from the viewer that a measurement takes at most where the error is not the goal, as a part of the image's.
+/// The maximum number of rays from the viewer in a measurement whose goal is not the error, as a part of the image's.
 const PART: f64 = 0.5;
 
-/// The number of choices that are measured at most.
+/// The maximum number of choices that are measured.
 const TRIES: usize = 2;
 
 /// Tells whether a choice is confirmed for a goal.
@@ -60,7 +61,7 @@ fn after(count: usize) -> usize {
     count + (AGAIN * count as f64) as usize
 }
 
-/// Returns how often the bound is computed at most, with so many pixels in the end.
+/// Returns the maximum number of times that the bound is computed for this many pixels.
 fn looks(pixels: usize) -> usize {
     std::iter::successors(Some(AT_ONCE), |count| Some(after(*count)))
         .take_while(|count| *count < pixels)
@@ -88,8 +89,8 @@ pub(super) struct Plans<'p, 'm> {
     pub truth: &'p mut Plan<'m>,
 }
 
-/// Confirms the estimate that is likely to meet a goal: first the cheaper one where pixels take different numbers of samples.
-/// Tells whether time has run out.
+/// Confirms the estimate that is likely to meet a goal: first the one with different numbers of samples, if it is
+/// cheaper. Tells whether time has run out.
 pub(super) fn confirm(
     goal: Goal,
     mut plans: Plans,
@@ -162,7 +163,7 @@ fn confirm_one(
     let of_pixel = estimate.rays + f64::from(2 * right);
     let most =
         if is_error { draw.rest() } else { (PART * estimate.rays * draw.all() as f64 / of_pixel) as usize };
-    // All but one: the samples that count as right are too few for what is said of an image of which all is known.
+    // All but one: the samples that count as right are too few for statements about a wholly known image.
     let pixels = draw.first(most.min(draw.rest() - 1));
     let doubt = doubt_of_each(TRIES * looks(pixels.len()));
     let (mut errors, mut next) = (Errors::new(1), AT_ONCE);

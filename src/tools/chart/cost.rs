@@ -24,18 +24,17 @@ const FIRST: f64 = 0.02;
 /// The number of standard errors by which the time of an image may be off.
 const DEVIATIONS: f64 = 3.0;
 
-/// The relative error of counted rays that is small enough, and the greatest number of packets and CPU time in seconds that
-/// it may take.
+/// The relative error of counted rays that is small enough, and the greatest number of packets and CPU time in
+/// seconds that it may take.
 const COUNTED: f64 = 0.1;
 const MOST_COUNTED: usize = 128;
 const COUNTING: f64 = 0.1;
 
-/// The number of pixels whose rays are counted one by one, and of those before it is asked whether there is time for more.
+/// The number of pixels whose rays are counted one by one, and the number between two checks of the time.
 const ALONE: usize = 1024;
 const ALONE_AT_ONCE: usize = 64;
 
-/// The step from each number to the next of those that are spread most evenly from 0 to 1: the golden ratio's part after
-/// the point.
+/// The step between numbers that are spread most evenly from 0 to 1: the fractional part of the golden ratio.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The number of packets that are looked for in vain before the image counts as measured.
@@ -112,7 +111,7 @@ impl Timing {
         !is_done
     }
 
-    /// Times so many more packets of an image, if it has them.
+    /// Times this many more packets of an image, if it has them.
     fn add(&mut self, plan: &Plan, threads: &Renderer, counted: Option<&Counted>, count: usize) {
         let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
         let tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
@@ -143,8 +142,8 @@ impl Timing {
         self.is_whole = self.sum(|packet| packet.pixels as f64) == (size[0] * size[1]) as f64;
     }
 
-    /// Returns the time for all of an image, which takes this number of rays from the viewer. If rays are counted, packets
-    /// have been looked at the more often the more rays they have.
+    /// Returns the time for all of an image, which takes this number of rays from the viewer. If rays are counted,
+    /// packets with more rays have been looked at more often.
     pub fn of_all(&self, primary: f64, counted: Option<&Counted>) -> Estimated {
         let of_primary = match counted.filter(|_| !self.is_whole) {
             Some(counted) => counted.each * self.of_ray(),
@@ -172,8 +171,8 @@ impl Timing {
         probes as f64 / first().map(|packet| packet.pixels).sum::<usize>() as f64
     }
 
-    /// Tells whether the packets take at most this part of the time of the other ones at the same places, in each of so
-    /// many groups.
+    /// Tells whether the packets take at most this part of the time of the other ones at the same places, in each of
+    /// this many groups.
     pub fn is_faster(&self, other: &Self, part: f64, groups: usize) -> bool {
         let count = self.packets.len().min(other.packets.len());
         let [one, other] = [self, other].map(|timing| timing.packets[..count].chunks(count.div_ceil(groups)));
@@ -231,8 +230,8 @@ pub(super) struct Counted {
 }
 
 impl Counted {
-    /// Counts the rays of pixels that are spread over an image, with one sample in each. Returns `None` where pixels use up
-    /// their ray budgets, so that the rays of one sample may depend on those of others.
+    /// Counts the rays of pixels that are spread over an image, with one sample in each. Returns `None` where pixels
+    /// use up their ray budgets, and the rays of one sample may depend on those of others.
     pub fn new(plan: &Plan, threads: &Renderer) -> Option<Self> {
         // Pixels one by one, to find those that take many rays.
         let (mut pixels, mut sum, mut seconds) = (Vec::new(), 0.0, 0.0);
@@ -267,7 +266,7 @@ impl Counted {
         }
     }
 
-    /// Returns one of the pixels, each the more often the more rays it takes.
+    /// Returns one of the pixels. Pixels with more rays are returned more often.
     fn place(&self, index: usize) -> [usize; 2] {
         let all = self.pixels.last().map_or(0.0, |(_, sum)| *sum);
         let wanted = all * (GOLDEN * (index as f64 + 0.5)).fract();
@@ -292,7 +291,7 @@ fn ratio_error(packets: &[Packet], above: impl Fn(&Packet) -> f64, below: impl F
     if count < 2.0 { f64::INFINITY } else { (squares * count / (count - 1.0)).sqrt() / sum }
 }
 
-/// Returns the pixels that a render traces together with this one, given how many tiles and pixels these are.
+/// Returns the pixels that a render traces together with this one, given the numbers of tiles and pixels.
 fn packet(size: [usize; 2], pixel: [usize; 2], [tiles, pixels]: [usize; 2]) -> Pixels {
     let all = places::tiles_around(size, pixel, tiles);
     let place = all.iter().position(|one| *one == pixel).unwrap_or(0) / pixels * pixels;

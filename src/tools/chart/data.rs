@@ -3,7 +3,7 @@
 use super::machine::Machine;
 use super::times::Times;
 
-/// All that is charted of a scene.
+/// All charted data of a scene.
 #[derive(Clone)]
 pub struct Chart {
     /// The name of the scene.
@@ -51,7 +51,7 @@ pub struct Point {
     pub name: String,
     /// The group of choices that it is drawn with.
     pub family: Family,
-    /// Whether the scene is traced so without a choice.
+    /// Whether the scene is traced in this way by default.
     pub is_default: bool,
     /// The times for one ray or one pixel, in seconds.
     pub times: Times,

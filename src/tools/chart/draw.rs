@@ -205,7 +205,7 @@ fn draw_points<D: DrawingBackend>(
     let places: Vec<_> = points.iter().map(|point| axes.place(point)).collect();
     let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(12.0) };
     let names: Vec<String> = points.iter().map(|point| name(panel, point)).collect();
-    // With a gap between neighbours, so that two numbers do not look like one.
+    // With a gap between neighbours, so two numbers do not look like one.
     let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 15.0);
     let sizes: Vec<_> = names.iter().zip(points).map(size).collect();
     let labels = labels::place(&places, &sizes, lines, axes.plot);
@@ -232,16 +232,16 @@ fn draw_points<D: DrawingBackend>(
 /// The axes of a panel.
 struct Axes {
     plot: PlotArea,
-    /// The times, in units of which so many are a second.
+    /// The axis of the times, and the number of their units in a second.
     across: Axis,
     scale: f64,
     up: Axis,
-    /// The largest error that does not matter, whether there are such, and the lower end of the axis of the others: those are
-    /// drawn in a strip below it.
+    /// The largest error that does not matter, whether any point has such an error, and the lower end of the axis of
+    /// the other errors. Errors that do not matter are drawn in a strip below it.
     nothing: f64,
     has_nothing: bool,
     floor: f64,
-    /// Whether there are others.
+    /// Whether there are other errors.
     has_errors: bool,
 }
 

@@ -1,8 +1,8 @@
-//! A quick measurement of the effects of accuracy and samples on a scene, to choose from.
+//! A quick measurement of the effects of accuracy and samples on a scene, for a choice among them.
 //!
-//! Errors are measured on pixels that are drawn at random, against more samples, and on all pixels that may show what is
-//! smaller than what is between samples; they are given with an upper bound that holds with a stated confidence. Which
-//! pixels, and how many, depends on the scene alone unless time runs out.
+//! Errors are measured against more samples, on pixels drawn at random and on all pixels that may show things smaller
+//! than the gaps between samples. They are given with an upper bound that holds with a stated confidence. The choice
+//! of the pixels and their number depend on the scene alone, unless time runs out.
 
 use super::candidate::Load;
 use super::confirm::{self, Known, Plans};
@@ -49,23 +49,24 @@ impl Stage {
 /// The least ratio of the number of samples of the reference to that of an adaptive choice.
 const MORE: u32 = 4;
 
-/// The rays that a measurement may always take, and twice as many for the worst pixels; else it may take this fraction of
-/// those of the image that it is about.
+/// The number of rays that a measurement may always take, doubled for the worst pixels. Otherwise it may take this
+/// fraction of the image's rays.
 const MIN_RAYS: f64 = 1e6;
 const PART: f64 = 0.5;
 
 /// The number of samples that an image must need for pixels with different numbers of them to be a choice.
 const ADAPTIVE_FROM: u32 = 16;
 
-/// The bounds among which one is looked for while choices are compared, at most.
+/// The maximum number of bounds from which one is chosen while choices are compared.
 const COMPARED: usize = 128;
 
-/// The numbers of pixels that are measured before it is asked whether they suffice: at first, and when time runs out.
+/// The number of pixels that are measured before the first check whether they suffice, and before a check of the
+/// time.
 const FIRST: usize = 1024;
 const FEWEST: usize = 128;
 
-/// Measures the scene's own accuracy with several numbers of samples, and the accuracies that are clearly faster. A render begins
-/// with work of this CPU time, in seconds.
+/// Measures the scene's own accuracy with several numbers of samples, and the accuracies that are clearly faster. A
+/// render begins with work of this CPU time, in seconds.
 ///
 /// # Errors
 /// Returns the errors of `load` and of starting threads, and `Interrupted` if `progress` breaks off before enough is
@@ -193,7 +194,7 @@ impl DrawnPixels<'_> {
         pixels: &[[usize; 2]],
         progress: &mut dyn Progress,
     ) -> io::Result<()> {
-        // Few enough that it is often asked whether time has run out.
+        // Few enough that the time is checked often.
         for pixels in pixels[self.errors[0].pixels()..].chunks(FEWEST) {
             if self.is_short {
                 break;
@@ -255,7 +256,8 @@ impl Study<'_> {
         estimates
     }
 
-    /// Times images of an accuracy, by its index: exactly the last one that is estimated to meet a goal of time.
+    /// Times images of an accuracy, by its index. The last one that is likely to meet a goal of time is timed
+    /// exactly.
     fn time(
         &mut self,
         index: usize,
@@ -358,17 +360,17 @@ impl Study<'_> {
         }
     }
 
-    /// Returns the number of rays that a measurement of an image of so many pixels may take, if `samples` of each pixel meet
-    /// the goal.
+    /// Returns the number of rays that a measurement of an image of this many pixels may take, if `samples` of each
+    /// pixel meet the goal.
     fn goal_rays(&self, samples: u32, pixels: usize) -> f64 {
         let least = if self.goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
-        // What is to be confirmed is measured on more pixels later, with fewer samples.
+        // A choice that is to be confirmed is measured later, on more pixels and with fewer samples.
         let part = if confirm::is_for(self.goal) { 0.0 } else { PART };
         (part * f64::from(samples) * pixels as f64).max(least)
     }
 
-    /// Estimates each number of samples of each accuracy, from the errors of the pixels that were drawn and of those that may
-    /// show small things.
+    /// Estimates each number of samples of each accuracy, from the errors of the pixels that were drawn and of those
+    /// that may show small things.
     fn estimates(
         &self,
         samples: &[u32],

@@ -99,12 +99,12 @@ struct Measured<'c> {
     changed: Option<usize>,
     /// The choice's name.
     choice: &'c str,
-    /// Whether the scene is traced so.
+    /// Whether the scene is traced in this way by default.
     default: bool,
     /// The error: for distances the 99th percentile of their errors, for colours the root of the mean square of theirs.
     error: f64,
-    /// Whether it is on the Pareto front: it has no wrong or inaccurate hits in any panel, and no such choice is faster and
-    /// more accurate.
+    /// Whether it is on the Pareto front: it has no wrong or inaccurate hits in any panel, and no such choice is
+    /// faster and more accurate.
     front: bool,
     /// The number of hits that are farther from the first crossing than its conditioning explains.
     inaccurate: usize,

@@ -1,4 +1,4 @@
-//! The goal of a choice, and what is estimated of the choices.
+//! The goal of a choice, and the estimates of the choices.
 
 use super::timings::Cost;
 use tabray_core::world::accuracy::Accuracy;
@@ -51,12 +51,12 @@ pub struct Estimate {
     pub pixels: usize,
 }
 
-/// What may be smaller than what is between samples.
+/// Things that may be smaller than the gaps between samples.
 #[derive(Clone, Copy)]
 pub struct Small {
-    /// The number of pixels that may show it. All of them were measured, unless they are too many.
+    /// The number of pixels that may show them. All of them were measured, unless they are too many.
     pub pixels: usize,
-    /// The part of all bounds that is due to what may have been missed in these, where 1 is white.
+    /// The part of all bounds that is due to things missed in these pixels, where 1 is white.
     pub missed: f64,
 }
 
@@ -69,11 +69,11 @@ pub struct Estimates {
     pub own: Accuracy,
     /// The number of pixels of the image.
     pub pixels: usize,
-    /// What may be smaller than what is between samples.
+    /// Things that may be smaller than the gaps between samples.
     pub small: Small,
     /// The number of samples per pixel that the choices were compared with.
     pub against: u32,
-    /// Whether time ran out, so that fewer pixels were measured than would be.
+    /// Whether time ran out, and fewer pixels were measured than planned.
     pub is_short: bool,
 }
 

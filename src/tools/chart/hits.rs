@@ -40,8 +40,8 @@ pub struct Set {
     is_searched: bool,
 }
 
-/// Returns all sets of a scene, with about so many pairs of a ray and an object in one of camera rays and in one of grazing
-/// rays.
+/// Returns all sets of a scene, with about these numbers of pairs of a ray and an object in one of camera rays and in
+/// one of grazing rays.
 pub fn sets(model: &Model, [of_camera, of_grazing]: [usize; 2]) -> Vec<Set> {
     let mut sets = Vec::new();
     for is_of_roots in [true, false] {

@@ -1,4 +1,4 @@
-//! What a found hit is, by the roots of the true ray and their conditioning.
+//! Judges found hits by the roots of the true ray and their conditioning.
 //!
 //! A distance alone says little: on a plane that a ray nearly runs along, rounding the ray's direction moves the hit by
 //! thousands of units, and at a silhouette two hits are closer together than a coarse method's error. So a hit counts as
@@ -39,7 +39,7 @@ pub(super) struct Known {
     nearby: OnceLock<Vec<Truth>>,
 }
 
-/// What a found hit is.
+/// The judgement of a found hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Judgement {
     /// The first hit, with this error of the distance in world units; or no hit where there is none.
@@ -81,8 +81,8 @@ pub(super) struct Pair<'p> {
 }
 
 impl Pair<'_> {
-    /// Judges a found distance, in world units. `promise` is the greatest error of a distance or of a point's distance from
-    /// the surface that the method allows itself, beside rounding.
+    /// Judges a found distance, in world units. `promise` is the greatest error of a distance or of a point's
+    /// distance from the surface that the method allows itself besides rounding.
     pub fn judge(&self, known: &Known, found: f64, promise: f64) -> Judgement {
         let judged = self.judge_by(&known.truth, found, promise);
         if matches!(judged, Judgement::Right(_) | Judgement::Undecided) {
@@ -121,7 +121,8 @@ impl Pair<'_> {
         Some(self.rounding(distance.high) / normal.dot(self.ray.dir).abs())
     }
 
-    /// Returns a bound of how far rounding moves the ray and the surface at a distance, in world units.
+    /// Returns a bound on the distance by which rounding moves the ray and the surface, at a distance, in world
+    /// units.
     fn rounding(&self, distance: f64) -> f64 {
         ROUNDING * (self.ray.origin.abs().max_element() + distance.abs() + self.shape.facts().max_coordinate)
     }

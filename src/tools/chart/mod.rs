@@ -72,8 +72,8 @@ pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Resu
     Ok(chart)
 }
 
-/// Counts the wrong hits of a scene's methods alone, on sets of about so many pairs of a ray and an object: camera rays
-/// and grazing rays. If `progress` breaks off a set, those before it are kept.
+/// Counts the wrong hits of a scene's methods alone, on sets of about these numbers of pairs of a ray and an object:
+/// camera rays and grazing rays. If `progress` breaks off a set, those before it are kept.
 ///
 /// # Errors
 /// Returns the errors of [`measure`].
@@ -89,7 +89,7 @@ pub fn wrong_hits(
 }
 
 impl Chart {
-    /// Makes the chart of a scene of which nothing is measured yet.
+    /// Makes the chart of a scene without any measurement.
     pub fn empty(scene: &str) -> Self {
         Self { scene: scene.to_owned(), machine: Machine::here(), panels: Vec::new(), is_whole: false }
     }

@@ -10,7 +10,8 @@ use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
 use tabray_core::world::sensor::Adaptive;
 
-/// About how many rays all choices together take for a pixel that is measured alone, with the probes around it.
+/// The approximate number of rays of all choices together for a pixel that is measured alone, with the probes around
+/// it.
 pub(super) const RAYS: u32 = 120;
 
 /// The measured cost and colours of a choice.
@@ -25,8 +26,8 @@ pub(super) struct MeasuredChoice {
     pub timing: Timing,
 }
 
-/// Measures the choices whose greatest number of samples is at most `most`. The rays are those of the first pixels, so many of
-/// which are spread over the image.
+/// Measures the choices whose greatest number of samples is at most `most`. The rays are those of the first `spread`
+/// pixels, which are spread over the image.
 pub(super) fn measure(
     model: &Model,
     threads: &Renderer,

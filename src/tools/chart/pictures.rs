@@ -29,13 +29,13 @@ use tabray_core::world::sensor::Adaptive;
 /// many samples.
 const TRUE_SAMPLES: u32 = 1024;
 
-/// The numbers of samples that are compared, beside the scene's own.
+/// The numbers of samples that are compared, besides the scene's own.
 const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
 
 /// The least and the greatest numbers of samples that are compared where pixels take different ones.
 pub(super) const ADAPTIVE: [[u32; 2]; 3] = [[4, 16], [4, 64], [4, 256]];
 
-/// The numbers of reflections and transmissions on a path that are compared, beside all.
+/// The numbers of reflections and transmissions on a path that are compared, besides all.
 const BOUNCES: [usize; 8] = [0, 1, 2, 3, 4, 6, 8, 12];
 
 /// The minimum number of pixels of which the true colours must be known.

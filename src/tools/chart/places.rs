@@ -22,7 +22,7 @@ pub fn place([width, height]: [usize; 2], index: usize) -> [usize; 2] {
     (size * (STEP * index as f64).fract()).to_array().map(|side| side as usize)
 }
 
-/// The pixels of an image in an order as if they were drawn at random, the same each time.
+/// The pixels of an image in a pseudorandom order, the same each time.
 struct Drawing {
     size: [usize; 2],
     /// Half the number of bits of the least power of 4 that is at least the number of pixels.
@@ -87,7 +87,7 @@ impl Draw {
         self.all - self.without.len()
     }
 
-    /// Returns so many of the pixels, or all in rows.
+    /// Returns the first `count` pixels, or all pixels in rows.
     pub fn first(&self, count: usize) -> Pixels {
         let is_drawn = |pixel: &[usize; 2]| !self.without.contains(pixel);
         if count >= self.rest() {
@@ -100,8 +100,8 @@ impl Draw {
     }
 }
 
-/// Returns the pixels of a tile and of those beside it, of which so many are traced together, in the order in which they
-/// are traced.
+/// Returns the pixels of the `together` tiles around a pixel that are traced together, in the order in which they are
+/// traced.
 pub fn tiles_around([width, height]: [usize; 2], [x, y]: [usize; 2], together: usize) -> Pixels {
     let (left, low) = (x / (TILE * together) * TILE * together, y / TILE * TILE);
     let mut pixels = Vec::new();

@@ -9,11 +9,11 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::SCRAMBLE;
 
-/// The seeds of the samples of the two images whose mean counts as right. They share no samples with a render or with each
-/// other.
+/// The seeds of the samples of the two images whose mean counts as right. They share no samples with a render or with
+/// each other.
 pub(super) const SCRAMBLES: [u32; 2] = [SCRAMBLE ^ 0x2545_f491, SCRAMBLE ^ 0x9e6c_63d0];
 
-/// The colours of a pixel as two images of independent samples have it.
+/// The colours of a pixel in two images of independent samples.
 pub(super) type Right = [Rgb; 2];
 
 /// The colours of some pixels, computed on all threads.
@@ -34,7 +34,7 @@ impl Colours<'_> {
         }
     }
 
-    /// Computes the right colours, with so many samples in each of the two images.
+    /// Computes the right colours, with this many samples in each of the two images.
     pub fn right(&mut self, plan: &mut Plan, samples: u32) -> io::Result<Vec<Right>> {
         let own = plan.camera.scramble;
         let mut image = |scramble| {

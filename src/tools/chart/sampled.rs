@@ -13,14 +13,15 @@ const WORST: f64 = 0.001;
 /// The probability with which a promise may be wrong.
 const DOUBT: f64 = 0.01;
 
-/// Returns the probability with which each part of one of so many bounds may be wrong. There are two parts, the pixels that
-/// are not measured and the noise of the right colours, and two phases: comparing choices, and confirming one.
+/// Returns the probability with which each part of one of this many bounds may be wrong. There are two parts, the
+/// pixels that are not measured and the noise of the right colours, and two phases: comparing choices, and confirming
+/// one.
 pub(super) fn doubt_of_each(bounds: usize) -> f64 {
     0.25 * DOUBT / bounds as f64
 }
 
-/// Returns the number of standard deviations that a normal distribution exceeds with a probability of at most `doubt`: what
-/// is added to a bound for the noise of the right colours.
+/// Returns the number of standard deviations that a normal distribution exceeds with a probability of at most
+/// `doubt`. Bounds allow this many for the noise of the right colours.
 fn deviations(doubt: f64) -> f64 {
     (-2.0 * libm::log(doubt)).sqrt()
 }
@@ -28,7 +29,7 @@ fn deviations(doubt: f64) -> f64 {
 /// The error of a pixel.
 #[derive(Clone, Copy)]
 struct PixelError {
-    /// The mean square of the channels' errors, as the two right colours have it: its expectation is the true one,
+    /// The mean square of the channels' errors, estimated by the two right colours. Its expectation is the true one,
     /// since their errors are independent, or more where a channel is white. It may be below 0.
     square: f64,
     /// A bound on the mean square of the right colours' own errors, in expectation.
@@ -69,9 +70,9 @@ pub(super) struct Errors {
 pub(super) struct Image<'i> {
     /// The number of its pixels.
     pub all: usize,
-    /// The errors of the pixels that may show what is smaller than a sample, all of them, for the same choices.
+    /// The errors of all pixels that may show things smaller than a sample, for the same choices.
     pub small: &'i Errors,
-    /// What may be missed in the pixels that may show something small.
+    /// Bounds on things missed in the pixels that may show something small.
     pub missed: &'i Missed,
 }
 
@@ -117,9 +118,9 @@ impl Errors {
         Ok(())
     }
 
-    /// Returns the error of a choice and an upper bound for the image: the root of the mean square, or with `worst` the
-    /// 99.9th percentile. The pixels have been drawn at random from those of the image that are not small ones; what they
-    /// say about the others is wrong with a probability of at most `doubt`.
+    /// Returns the error of a choice and an upper bound for the image: the root of the mean square, or with `worst`
+    /// the 99.9th percentile. The pixels have been drawn at random from those of the image that are not small ones.
+    /// The conclusion about the others is wrong with a probability of at most `doubt`.
     pub fn bounds(&self, choice: usize, image: Image, worst: bool, doubt: f64) -> [f64; 2] {
         if worst {
             return self.percentile(choice, image, doubt);
@@ -146,8 +147,8 @@ impl Errors {
         [error, bound.max(error)]
     }
 
-    /// Returns the error that one of a thousand pixels exceeds, and an upper bound for the image: an error that so many
-    /// of the pixels exceed that it is no accident.
+    /// Returns the error that one of a thousand pixels exceeds, and an upper bound for the image: an error that more
+    /// pixels exceed than chance explains.
     fn percentile(&self, choice: usize, image: Image, doubt: f64) -> [f64; 2] {
         let sorted = |errors: &mut dyn Iterator<Item = f64>| {
             let mut errors: Vec<_> = errors.collect();

@@ -1,9 +1,10 @@
-//! Pixels that may show something bright that is smaller than what is between their samples: lamps, stars, wires and
+//! Pixels that may show something bright that is smaller than the gaps between their samples: lamps, stars, wires and
 //! glints, seen directly, in mirrors or in glass.
 //!
 //! They are found by bounds on the colours of all rays through a part of the image. Where these allow more than
-//! what samples are sure to see, the part is cut into quarters, down to parts of a pixel: to the cells in which the bright thing must be.
-//! Then all of these pixels are measured, by many samples in the cells and some in the rest of the pixel.
+//! samples are sure to see, the part is cut into quarters, down to parts of a pixel: to the cells in which the bright
+//! thing must be. Then all of these pixels are measured, by many samples in the cells and some in the rest of the
+//! pixel.
 
 use super::bright::{Bounds, Cell, unbounded};
 use super::progress::Progress;
@@ -23,8 +24,8 @@ use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{Sample, Sampler};
 use tabray_core::world::sensor::Sensor;
 
-/// The least and the greatest brightness, where 1 is white, up to which nothing counts as small. What is less bright must take
-/// a large part of a pixel, or of many pixels, to matter, and then samples see it.
+/// The least and the greatest brightness, where 1 is white, up to which nothing counts as small. Something less
+/// bright must take a large part of a pixel, or of many pixels, to matter, and then samples see it.
 const BRIGHT: [f64; 2] = [4.0, 64.0];
 
 /// The width in pixels of the squares that are looked at first.
@@ -40,11 +41,12 @@ const FIRST: u32 = 64;
 /// The greatest number of samples for all pixels together.
 const MOST: usize = 4_000_000;
 
-/// The part of the goal that what may be missed is to be below.
+/// The part of the goal below which the bound on missed things should be.
 const WANTED: f64 = 0.15;
 
-/// The largest expected square of what is missed, for a thing of the best size to be missed: a thing that takes the part p of
-/// a cell is missed by n samples with a probability of at most exp(-p n), and p exp(-p n / 2) n is at most 2 / e.
+/// The largest expected square of the missed light, for a thing of the size that is missed most: a thing that takes
+/// the part p of a cell is missed by n samples with a probability of at most exp(-p n), and p exp(-p n / 2) n is at
+/// most 2 / e.
 const EXPECTED: f64 = 0.541_341_132_946_451;
 
 /// The number of samples that miss a thing with a probability of 1 % is this divided by the part of the cell that it takes.
@@ -54,7 +56,7 @@ const SURE: f64 = 4.605_170_185_988_091;
 struct SmallPixel {
     at: [usize; 2],
     cells: Vec<Cell>,
-    /// The sums of the samples of each image: in the rest, and in each cell; and their numbers.
+    /// The sums of the samples of each image, in the rest and in each cell, and their numbers.
     rest: [(Rgb, u32); 2],
     sums: [Vec<Rgb>; 2],
     count: u32,
@@ -67,17 +69,17 @@ pub(super) struct SmallThings {
     is_measured: bool,
 }
 
-/// What may be missed in the pixels that may show something small.
+/// Bounds on things missed in the pixels that may show something small.
 #[derive(Default)]
 pub(super) struct Missed {
-    /// A bound on what is missed in each pixel in the mean, where 1 is white.
+    /// A bound on the mean light missed in each pixel, where 1 is white.
     pub pixels: Vec<f64>,
-    /// What may be missed in one pixel.
+    /// A bound on the light missed in one pixel.
     pub largest: f64,
 }
 
 impl Missed {
-    /// Bounds the root mean square over an image of so many pixels.
+    /// Bounds the root mean square over an image of this many pixels.
     pub fn error(&self, all: usize) -> f64 {
         let squares: f64 = self.pixels.iter().map(|missed| EXPECTED * missed * missed).sum();
         ((squares + self.largest * self.largest) / all as f64).sqrt()
@@ -85,20 +87,20 @@ impl Missed {
 }
 
 impl SmallThings {
-    /// Returns none, of images that are shown so.
+    /// Returns an empty set, for images with this display.
     pub fn none(display: Display) -> Self {
         Self { pixels: Vec::new(), display, is_measured: true }
     }
 
-    /// Finds the pixels of a plan's image, in which things matter that together change the image by more than an error.
-    /// `samples` is the number of samples that each of the pixels has that are measured.
+    /// Finds the pixels of a plan's image with things that together change the image by more than an error. `samples`
+    /// is the number of samples of each measured pixel.
     pub fn find(plan: &Plan, threads: &Renderer, error: f64, samples: u32) -> Self {
         let camera = &plan.camera;
         let [width, height] = camera.pixels;
         let bounds = Brightness::new(plan.model);
         let mut found = Self::none(camera.display());
-        // Something matters in so many white pixels, or in one pixel that is as bright as the root of that. Samples are sure
-        // to see what is so bright that it takes a certain part of these.
+        // Something matters in this many white pixels, or in one pixel that is as bright as the root of that. Samples
+        // are sure to see a thing so bright that it takes a certain part of these.
         let matters = (width * height) as f64 * error * error;
         let bright = f64::from(samples) * if matters < 1.0 { matters.sqrt() } else { matters } / SURE;
         let bright = bright.clamp(BRIGHT[0], BRIGHT[1]);
@@ -137,7 +139,7 @@ impl SmallThings {
         self.is_measured
     }
 
-    /// Takes samples until what may be missed is a small part of an error, or too many are taken.
+    /// Takes samples until the missed light is a small part of an error, or too many are taken.
     pub fn measure(
         &mut self,
         plan: &Plan,
@@ -166,7 +168,7 @@ impl SmallThings {
             if open.iter().sum::<f64>() <= limit {
                 break;
             }
-            // The samples of those that are the most open are doubled.
+            // The samples of the most uncertain pixels are doubled.
             let least = limit / self.pixels.len() as f64;
             wanted = open
                 .iter()
@@ -184,7 +186,7 @@ impl SmallThings {
         Ok(())
     }
 
-    /// Lets pixels, by their indices, have so many samples in each cell and image.
+    /// Gives pixels, by their indices, this many samples in each cell and image.
     fn take(&mut self, plan: &Plan, threads: &Renderer, wanted: &[(usize, u32)]) {
         let pixels = &self.pixels;
         let part = |range: Range<usize>| {
@@ -204,12 +206,12 @@ impl SmallThings {
         self.pixels.iter().map(|pixel| of(pixel, &self.display)).collect()
     }
 
-    /// Returns the right colours, as the two images have them.
+    /// Returns the right colours, one of each of the two images.
     pub fn right(&self) -> Vec<Right> {
         self.of_each(SmallPixel::shown)
     }
 
-    /// Returns what may be missed: everything, where nothing is measured.
+    /// Returns bounds on missed things: on everything, where nothing is measured.
     pub fn missed(&self) -> Missed {
         if !self.is_measured {
             return Missed { pixels: vec![EXPECTED.sqrt().recip(); self.pixels.len()], largest: 0.0 };
@@ -234,7 +236,8 @@ impl SmallPixel {
         self.cells.iter().map(Cell::area).sum()
     }
 
-    /// Takes samples until each cell has so many in each image. Returns the sums of the rest, and those of the cells.
+    /// Takes samples until each cell has this many in each image. Returns the sums of the rest, and those of the
+    /// cells.
     fn more(
         &self,
         count: u32,
@@ -283,20 +286,20 @@ impl SmallPixel {
         (1.0 - one.min(other)).max_element()
     }
 
-    /// Bounds what is missed, in the mean: the light of things of the best size to be missed, in all cells.
+    /// Bounds the mean of the missed light: that of things of the size that is missed most, in all cells.
     fn missed(&self, display: &Display) -> f64 {
         let samples = 2.0 * f64::from(self.count);
         self.cells.iter().map(|cell| cell.area() * cell.most / samples).sum::<f64>().min(self.room(display))
     }
 
-    /// Bounds what is missed, with a confidence of 99 %, of a thing in one cell.
+    /// Bounds the missed light of a thing in one cell, with a confidence of 99 %.
     fn largest(&self, display: &Display) -> f64 {
         let samples = 2.0 * f64::from(self.count);
         let of_cells = self.cells.iter().map(|cell| SURE * cell.area() * cell.most / samples);
         of_cells.fold(0.0, f64::max).min(self.room(display))
     }
 
-    /// Returns the square of what is open: of what may be missed, and of the noise of what is seen.
+    /// Returns the square of the uncertainty: of the missed light, and of the noise of the samples.
     fn open(&self, display: &Display) -> f64 {
         let [one, other] = self.shown(display);
         self.missed(display).max(self.largest(display)).powi(2) + 0.25 * (one - other).length_squared() / 3.0

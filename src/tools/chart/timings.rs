@@ -108,7 +108,7 @@ impl Timings {
         self.overhead.with(primary, &self.packets[&(index, samples)], self.counted[&index].as_ref())
     }
 
-    /// Returns the cost of an image of so many rays from the viewer for each pixel in the mean.
+    /// Returns the cost of an image with this mean number of rays from the viewer per pixel.
     pub fn cost_of(&self, rays: f64, timing: &Timing) -> Cost {
         self.overhead.with(rays * self.pixels, timing, None)
     }
@@ -129,7 +129,7 @@ pub(super) fn gains(own: &Model, others: &[&Model], threads: &Renderer) -> Vec<b
     others.iter().map(compared).map(is_faster).collect()
 }
 
-/// What a render takes beside tracing.
+/// The cost of a render in addition to tracing.
 struct Overhead {
     /// The CPU time to begin, in seconds: the work of one thread.
     beginning: f64,

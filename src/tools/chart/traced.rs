@@ -1,4 +1,4 @@
-//! Some pixels of an image, traced in groups as a render traces them: their colours, and what they cost.
+//! Some pixels of an image, traced in groups as a render traces them: their colours and their costs.
 
 use super::places::Pixels;
 use crate::bench::clock;
@@ -15,7 +15,7 @@ use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
 
-/// The time of a group in seconds below which it matters that scratch space is used for the first time.
+/// The time of a group, in seconds, below which the first use of scratch space matters.
 const SHORT: f64 = 1e-3;
 
 /// A group of pixels that were traced together.
@@ -91,10 +91,10 @@ fn group(plan: &Plan, pixels: &[[usize; 2]], scratch: &mut Scratch) -> Group {
     Group { colours, rays, seconds }
 }
 
-/// Traces pixels that may lie far apart, and returns each with its colour, before it is clamped, and the number of samples
-/// where pixels differ in that.
+/// Traces pixels that may lie far apart, and returns the colour of each, before it is clamped, and the number of
+/// samples where pixels differ in that.
 pub(super) fn apart(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, u64) {
-    // Pixels that take as many samples as they need share probes only with those beside them.
+    // Pixels that take as many samples as they need share probes only with their neighbours.
     let is_fixed = plan.camera.adaptive.is_none();
     let at_once = if is_fixed { (4 * PACKET_SIZE / plan.camera.samples as usize).max(1) } else { 1 };
     let groups = groups(threads, plan, &pixels.chunks(at_once).collect::<Vec<_>>());

@@ -7,10 +7,11 @@ use std::fmt::Write;
 /// The distance in Oklab from which the eye can tell colours apart, in hundredths of that from black to white.
 const VISIBLE: f64 = 2.0;
 
-/// The ratio of times from which on another accuracy than the default is worth taking.
+/// Another accuracy than the default is worth taking if it takes at most this part of its time.
 const GAIN: f64 = 0.8;
 
-/// Returns the advice, and the verdict on each panel: the front, the position of the default, and what to choose.
+/// Returns the advice, and the verdict on each panel: the front, the position of the default, and the recommended
+/// choice.
 pub fn words(chart: &Chart) -> String {
     let mut text = String::new();
     let todo = advice(chart);
@@ -51,7 +52,7 @@ pub fn words(chart: &Chart) -> String {
     text
 }
 
-/// Gives advice in the order of importance: first what rests on errors and counts, then what rests on times.
+/// Gives advice in the order of importance: first by errors and counts, then by times.
 fn advice(chart: &Chart) -> Vec<String> {
     let of = |subject: Subject| chart.panels.iter().find(|panel| panel.subject == subject);
     let again = chart
@@ -115,9 +116,9 @@ fn sampling(panel: &Panel) -> String {
     format!("take `--samples {count}{sampler}`{own}, with which 99 % of the pixels look right")
 }
 
-/// Tells whether a choice may be advised: it has no wrong hits in any panel, and bounds the errors of its hits. Methods
-/// without bounds lose some of the hard rays of each kind of shape, as `docs/accuracy.md` counts, even where they lose none
-/// in this scene, and most of them cannot be chosen.
+/// Tells whether a choice may be advised: it has no wrong hits in any panel, and bounds the errors of its hits.
+/// Methods without bounds lose some of the hard rays of each kind of shape, as `docs/accuracy.md` counts, even where
+/// they lose none in this scene, and most of them cannot be chosen.
 fn is_advisable(chart: &Chart, point: &Point) -> bool {
     matches!(point.family, Family::Own | Family::Sobol | Family::Random | Family::Adaptive)
         && !chart.has_faults(&point.name)
@@ -241,8 +242,8 @@ fn front(chart: &Chart, panel: &Panel) -> Option<String> {
     (!each.is_empty()).then(|| format!("Pareto front: {}", each.join("; ")))
 }
 
-/// Says where the default stands in the time and the colours of images; `None` where the times are in doubt. Only a choice
-/// that may be advised, and is clearly faster or more exact, beats it.
+/// Describes the position of the default in the time and the colours of images; `None` where the times are in doubt.
+/// Only a choice that may be advised, and is clearly faster or more exact, beats it.
 fn default_position(chart: &Chart, panel: &Panel) -> Option<String> {
     let default = panel.points.iter().find(|point| point.is_default).filter(|_| !chart.is_doubtful())?;
     let name = &default.name;

@@ -18,10 +18,10 @@ const LENSES: [DVec2; 4] =
 /// the difference between unit vectors.
 const DIRECTION_OFF: f64 = 1e-6;
 
-/// More than the rounding of a direction, which is a unit vector.
+/// An upper limit on the rounding error of a direction, which is a unit vector.
 const ROUNDING: f64 = 1e-12;
 
-/// Checks the rays of a camera through the corners and the centre of its image, and what it says of them.
+/// Checks the rays of a camera through the corners and the centre of its image, and its statements about them.
 pub fn camera(camera: &Sensor) -> Result<(), Fault> {
     let Sensor { pixels: [width, height], samples, .. } = *camera;
     if width == 0 || height == 0 || samples == 0 {
@@ -67,7 +67,7 @@ fn looks(camera: &Sensor, at: [f64; 2], lens: DVec2) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks what a camera says of its rays at a place.
+/// Checks the statements of a camera about its rays at a place.
 fn knows(camera: &Sensor, at: [f64; 2]) -> Result<(), Fault> {
     let fault = |found: String| {
         let [x, y] = at;

@@ -36,7 +36,7 @@ const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"]
 const FIELDS: [&str; 4] =
     ["x^2 + y^2 + z^2 - 4", "sin(x) + sin(y) + sin(z)", "x + 2*y - z", "max(abs(x), abs(y)) - 1 + z^2/4"];
 
-/// Formulas of a curve's x, y and z in t: of others, drawn one by one, most have a place where the curve stands still.
+/// Formulas of a curve's x, y and z in t. Formulas drawn one by one mostly have a place where the curve stands still.
 const CURVE_FORMULAS: [&str; 3] = ["cos(t)", "0.2*t", "sin(t)"];
 
 /// Formulas of a surface's x, y and z in u and v: most others have folds.
@@ -62,13 +62,12 @@ impl SceneFolder {
 /// Draws pseudorandom numbers, and values made of them.
 pub struct Draw {
     numbers: Pcg32,
-    /// The numbers of what is drawn aside.
+    /// The numbers for values that are drawn aside.
     others: Pcg32,
 }
 
 impl Draw {
-    /// Seeds the generator with a plugin's name, so that what is drawn for a plugin does not depend on the other
-    /// plugins.
+    /// Seeds the generator with a plugin's name, so the values for a plugin do not depend on the other plugins.
     pub fn new(name: &str) -> Self {
         let seed = name.bytes().fold(0, |seed: u64, byte| seed.wrapping_mul(257).wrapping_add(byte.into()));
         Self { numbers: Pcg32::new(seed, 0), others: Pcg32::new(seed, 1) }
@@ -100,7 +99,7 @@ impl Draw {
         }
     }
 
-    /// Draws a number as scenes have them: round ones and small ones.
+    /// Draws a number like those of scenes: round ones and small ones.
     fn number(&mut self) -> f64 {
         match self.below(5) {
             0 => self.below(9) as f64 - 4.0,
@@ -131,7 +130,7 @@ impl Draw {
         {
             let most = entity.attributes().filter(|its| is_name_of(*its, Kind::Object));
             let most = most.map(|its| its.arity().examples().into_iter().max().unwrap_or(1)).max();
-            // Half of the time they are all the same, as those that are drawn hardly ever meet.
+            // Half of the time they are all the same, as objects that are drawn separately hardly ever meet.
             let (first, most) = (self.entity(other, "NAME"), most.unwrap_or(1));
             let are_same = most > 1 && self.below(2) == 0;
             for index in 0..most {
@@ -171,7 +170,7 @@ impl Draw {
         text + &self.entity(shader, name(Kind::Shader))
     }
 
-    /// Draws from other numbers, so that what is drawn afterwards does not depend on it.
+    /// Draws from other numbers: later draws do not depend on this one.
     fn aside<T>(&mut self, draw: impl FnOnce(&mut Self) -> T) -> T {
         swap(&mut self.numbers, &mut self.others);
         let drawn = draw(self);
@@ -221,7 +220,7 @@ impl Draw {
         match attribute.value_type() {
             Type::Word => word(PICTURE),
             Type::File => word(MODEL),
-            // All that there are: one that nothing refers to would be tried as well.
+            // All possible names: an entity that nothing refers to would be tried as well.
             Type::Name(kind) => {
                 let most = attribute.arity().examples().into_iter().max().unwrap_or(count);
                 Some((0..most).map(|index| of_list(name(kind), index)).collect())
@@ -248,12 +247,12 @@ impl Draw {
     }
 }
 
-/// Tells whether an attribute of the type refers to an entity of this kind.
 /// Returns the axis whose coordinate an attribute is, or else the first one.
 fn axis(attribute: &dyn Attribute) -> usize {
     "xyz".find(attribute.name()).unwrap_or(0)
 }
 
+/// Tells whether an attribute takes the name of an entity of this kind.
 fn is_name_of(attribute: &dyn Attribute, kind: Kind) -> bool {
     matches!(attribute.value_type(), Type::Name(named) if named == kind)
 }

@@ -228,7 +228,7 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks the samples of a light that is spread out, as a place sees them.
+/// Checks the samples of an extended light, as a place sees them.
 fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut Draw) -> Result<(), Fault> {
     let (normal, numbers) = (draw.direction(), DVec2::new(draw.part(), draw.part()));
     let Some(sample) = emitter.sample(at, normal, numbers) else { return Ok(()) };
@@ -255,7 +255,7 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
         .chain((0..PLACES).map(move |_| middle + draw.direction() * 10.0 * draw.part()))
 }
 
-/// Checks that a material consists of finite numbers, and what its interface does with rays.
+/// Checks that a material consists of finite numbers, and that its interface continues rays as it must.
 pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
     let Material { ambient, diffuse, specular, shininess, transparency, interface } = material;
     let is_finite = [ambient, diffuse, specular].iter().all(|colour| colour.is_finite());

@@ -1,8 +1,8 @@
 //! Checks that plugins keep the contracts of the traits that they implement.
 //!
-//! The compiler checks that a plugin has the right functions, but not what they return. Here every plugin that is
-//! linked in is tried, with values that its table allows and with rays at what its constructor makes of them. A crate
-//! with plugins needs one line in a test for that: [`assert_kept`].
+//! The compiler checks that a plugin has the right functions, but not their results. Here every plugin that is linked
+//! in is tried, with values that its table allows and with rays at the results of its constructor. A crate with
+//! plugins needs one line in a test for that: [`assert_kept`].
 
 mod cameras;
 mod draw;

@@ -47,7 +47,7 @@ pub enum Promise {
     BackgroundIsSound,
     /// A camera's directions are unit vectors, the same each time and in packets.
     CameraLooks,
-    /// What a camera says about its rays is true.
+    /// A camera's statements about its rays are true.
     CameraKnows,
     /// A profile's radius is finite, and somewhere above 0.
     ProfileIsFinite,

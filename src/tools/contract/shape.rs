@@ -23,11 +23,11 @@ const ASIDE: f64 = 1e-10;
 pub const SLACK: f64 = 1e-7;
 
 /// The least absolute cosine between a ray and the normal. Below it the ray grazes the surface, and rounding decides
-/// what it hits.
+/// whether and where it hits.
 pub const GRAZING: f64 = 0.05;
 
-/// How far the rays are from a ray that stands for them, as a fraction of the same numbers: some thousand times as far as
-/// those of a copy that is not distorted.
+/// The distance of rays from a ray that stands for them, as a fraction of the same numbers: some thousand times as
+/// far as those of a copy that is not distorted.
 const DRIFT: f64 = 1e-10;
 
 /// A shape and the ray with which it is tried.
@@ -44,9 +44,9 @@ impl RayTrial<'_> {
         1.0 + self.ray.origin.abs().max_element() + distance
     }
 
-    /// Returns how far off the distance of a ray may be if rounding shifts the ray a little sideways, in world units:
-    /// twice the greatest difference from the distances of four neighbouring rays, plus the shift; anything if one of
-    /// the neighbours hits what the ray misses, or misses what it hits.
+    /// Returns the error of a ray's distance if rounding shifts the ray a little sideways, in world units: twice the
+    /// greatest difference from the distances of four neighbouring rays, plus the shift; infinite if one of the
+    /// neighbours hits where the ray misses, or the other way round.
     pub fn tolerance(&self, ray: &Ray, range: &RayRange, distance: f64) -> f64 {
         let step = ASIDE * self.size(if distance == MISS { 0.0 } else { distance });
         let (across, up) = ray.dir.any_orthonormal_pair();
@@ -103,7 +103,7 @@ impl RayTrial<'_> {
         })
     }
 
-    /// Says in what the distance of a packet of copies of the ray differs from that of the ray.
+    /// Describes the difference between the distance of a packet of copies of the ray and that of the ray.
     fn packet_fault(&self, cpu: Cpu, rays: RayPacket, distance: f64) -> Option<String> {
         let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
         let (mut hit_ids, mut doubt) = ([0; LANES], [0; LANES]);
@@ -127,7 +127,7 @@ impl RayTrial<'_> {
         None
     }
 
-    /// Says in what the hit of a packet of copies of the ray differs from that of the ray.
+    /// Describes the difference between the hit of a packet of copies of the ray and that of the ray.
     fn interaction_fault(&self, cpu: Cpu, rays: RayPacket, distance: f64) -> Option<String> {
         let Self { shape, ray, .. } = self;
         let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
@@ -146,7 +146,7 @@ impl RayTrial<'_> {
         let side = Side::seen_along(ray.dir, normal);
         let turned = shape.is_two_sided() && side == Side::Inside;
         let (one, many) = (shape.shading_normal(at, if turned { -normal } else { normal }), normals.get(0));
-        // At an edge the surface has two normals, and packets may take that of the face that the ray comes to.
+        // At an edge the surface has two normals, and packets may take that of the face on the ray's side.
         if shape.packets().finds_normals_by_rays() && is_beside(shape, at, [normal, many]) {
             return None;
         }
@@ -161,12 +161,12 @@ impl RayTrial<'_> {
             .then(|| format!("the cosine {cosine} in single rays, and {} in packets", cosines[0]))
     }
 
-    /// Checks that the bracket of a ray that stands for others holds the hits of these, as where a copy is placed.
+    /// Checks that the bracket of a ray that stands for others contains the hits of these, as where a copy is placed.
     pub fn check_drift(&self) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
         let drift = RayError { origin: DRIFT * self.size(0.0), dir: DRIFT };
         let bracket = shape.packets().t_bounds(&RayBall { ray: *ray, drift }, &RayRange::ALL);
-        // A shape of which only the distance is known answers for the ray alone.
+        // A shape that knows only its distance answers for the ray alone.
         if bracket.near == bracket.far {
             return Ok(());
         }
@@ -212,7 +212,7 @@ impl RayTrial<'_> {
         Ok(())
     }
 
-    /// Of a shape without an equation, proofs know the bounds alone, which have a promise of their own.
+    /// For a shape without an equation, only the bounds are proven. They have a promise of their own.
     pub fn check_proof(&self, distance: f64) -> Result<(), Fault> {
         if !self.shape.is_certified() {
             return Ok(());
@@ -239,9 +239,9 @@ pub fn describe_ray(Ray { origin, dir }: &Ray) -> String {
     format!("from {origin} along {dir}")
 }
 
-/// Tells whether a point lies on an edge or a corner of two faces with different normals: whether the second one is found a
-/// little beside the point, in its plane. At a corner, the directions to both sides of one edge may lead along others, so
-/// many are tried.
+/// Tells whether a point lies on an edge or a corner of two faces with different normals: whether the second normal
+/// is found a little beside the point, in its plane. At a corner, the directions to both sides of one edge may lead
+/// along others, so many are tried.
 fn is_beside(shape: &AnyShape, at: DVec3, [one, other]: [DVec3; 2]) -> bool {
     const DIRECTIONS: u32 = 32;
     let Some(along) = one.cross(other).try_normalize() else { return false };

@@ -75,8 +75,8 @@ impl RayTrial<'_> {
         Ok(())
     }
 
-    /// Checks, where the surface is smooth, that the normal is perpendicular to it and points to the same side as those
-    /// nearby.
+    /// Checks, where the surface is smooth, that the normal is perpendicular to it and points to the same side as the
+    /// normals nearby.
     pub fn check_normal(&self, met: &SurfaceHit) -> Result<(), Fault> {
         let (across, up) = self.ray.dir.any_orthonormal_pair();
         let stride = STRIDE * self.size(met.distance).min(10.0);
@@ -172,8 +172,8 @@ impl RayTrial<'_> {
         Ok(())
     }
 
-    /// Checks that a ray that leaves the surface hits what it hits from a little farther, or nothing where the shape
-    /// says so.
+    /// Checks that a ray that leaves the surface has the same hit as one from a little farther on, or none where the
+    /// shape says so.
     pub fn check_leaving(&self, met: &SurfaceHit, draw: &mut Draw) -> Result<(), Fault> {
         let stride = STRIDE * self.size(met.distance);
         for _ in 0..4 {

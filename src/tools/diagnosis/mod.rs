@@ -1,4 +1,4 @@
-//! Why an image is black, burnt or empty, in numbers, and what cures it.
+//! The reasons why an image is black, burnt or empty, in numbers, and the cures.
 
 mod survey;
 
@@ -25,13 +25,13 @@ use tabray_core::world::sensor::Sensor;
 /// The maximum number of columns and rows of pixels that are looked at.
 const GRID: [usize; 2] = [40, 30];
 
-/// The level from which on an image is not black.
+/// The least level of an image that is not black.
 const DARK: u8 = 8;
 
 /// The level that a cure aims at.
 const GOOD: f64 = 128.0;
 
-/// The share of pixels beyond which an image is burnt, and the light from which on a pixel is.
+/// The share of pixels beyond which an image is burnt, and the light beyond which a pixel is.
 const BURNT: f64 = 0.25;
 const TOO_BRIGHT: f64 = 1.02;
 
@@ -73,7 +73,8 @@ fn is_burnt(levels: &Levels) -> bool {
     levels.white as f64 > BURNT * levels.pixels as f64
 }
 
-/// Says that with one sample for each pixel, a background lights the scene from one direction, or rough surfaces look smooth.
+/// Remarks that with one sample for each pixel, a background lights the scene from one direction, or rough surfaces
+/// look smooth.
 fn flat(model: &Model) -> Option<Remark> {
     let Sensor { samples, adaptive, .. } = &model.camera.value;
     if *samples != 1 || adaptive.is_some() {
@@ -92,7 +93,7 @@ fn flat(model: &Model) -> Option<Remark> {
     of_sky.or_else(|| model.objects.iter().find(is_rough).map(|object| said(object.args.name(), rough)))
 }
 
-/// Returns the remarks on a model's image, of which a few pixels are tried.
+/// Returns the remark on a model's image, of which a few pixels are tried.
 pub fn tried(model: &Model) -> Option<Remark> {
     // The deepest reflections need more of a stack than the program's own thread has.
     renderer_with(1).ok()?.run(|| tried_here(model))
@@ -227,7 +228,7 @@ fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
     Remark { message, help: brighter(survey, &lamps) }
 }
 
-/// Returns what makes an image brighter.
+/// Returns the changes that make an image brighter.
 fn brighter(survey: &Survey, lamps: &[usize]) -> String {
     let (plan, display) = (survey.plan, survey.plan.camera.display());
     let mut cures = Vec::new();
@@ -280,7 +281,7 @@ fn burnt(plan: &Plan, survey: &Survey, levels: &Levels) -> Option<Remark> {
     }
     let reasons = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join("; ")) };
     let message = format!("{share:.0} % of the image is burnt to white{reasons}");
-    // What a tenth of the places exceeds becomes white.
+    // Only a tenth of the places is brighter than this light, which becomes white.
     let bright = seen[seen.len() * 9 / 10];
     let stops = plan.camera.exposure - (2.0 * libm::log2(bright)).ceil() / 2.0;
     let help = match plan.camera.rules {

@@ -1,4 +1,4 @@
-//! What is seen at some places of an image, and which lights reach it.
+//! The surfaces at some places of an image, and the lights that reach them.
 
 use glam::DVec3;
 use tabray_core::render::observer::{Event, LightOutcome, RayPurpose, TraceObserver};
@@ -6,7 +6,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
 use tabray_core::world::rules::Rules;
 
-/// The maximum number of tests of objects that looking takes: it tests each object for each ray.
+/// The maximum number of object tests of a survey, which tests each object for each ray.
 const MOST_TESTS: usize = 1 << 23;
 
 /// The effect of a light at the places that are looked at.
@@ -26,7 +26,7 @@ pub struct Lamp {
     pub behind: usize,
 }
 
-/// What is seen at some places of an image, without mirrors and glass.
+/// The surfaces at some places of an image, without mirrors and glass.
 pub struct Survey<'p> {
     pub plan: &'p Plan<'p>,
     /// The number of places that show an object.
@@ -45,14 +45,14 @@ pub struct Survey<'p> {
     current: Hit,
 }
 
-/// What is known of the hit of a ray from the viewer.
+/// The hit of a ray from the viewer.
 #[derive(Default)]
 struct Hit {
     point: DVec3,
     distance: f64,
     ambient: f64,
-    /// Of each light that shines on it: its index, what it adds before a division by the length of the path, and its
-    /// distance.
+    /// For each light that shines on it: its index, the light that it adds before a division by the length of the
+    /// path, and its distance.
     lit: Vec<(usize, f64, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! A picture beside what its scene shows.
+//! A picture beside the right image of its scene.
 
 use glam::DVec3;
 use image::RgbImage;

@@ -1,13 +1,13 @@
-//! In what way pixels of a picture differ.
+//! The ways in which pixels of a picture differ.
 
 use super::views::View;
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 
-/// In what way pixels of a picture differ.
+/// A way in which pixels of a picture differ.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mistake {
-    /// All of the picture is seen in another way.
+    /// The whole picture is seen in another way.
     View(View),
     /// Another object is seen: this one, where that one is right; `None` for nothing.
     Object {
@@ -16,7 +16,7 @@ pub enum Mistake {
         /// The index of the object that the scene shows.
         right: Option<usize>,
     },
-    /// These lights shine on an object, though others are in their way.
+    /// These lights shine on an object, though other objects are in their way.
     ShadowMissing {
         /// The indices of the lights.
         lights: Vec<usize>,

@@ -1,5 +1,5 @@
-//! Compares a picture with what its scene shows, and finds out in what way it differs: the scene is rendered in other ways, each
-//! a usual mistake, and a mistake is named where the picture has its colours.
+//! Compares a picture with the image of its scene, and finds out in what way it differs. The scene is rendered with
+//! usual mistakes, and a mistake is named where the picture has its colours.
 
 mod compared;
 mod mistake;
@@ -19,7 +19,7 @@ pub use views::View;
 /// The pixels that differ in one way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// How they differ.
+    /// The way in which they differ.
     pub mistake: Mistake,
     /// Their number.
     pub pixels: usize,
@@ -27,12 +27,12 @@ pub struct Finding {
     pub first: [usize; 2],
 }
 
-/// What a picture has to do with its scene.
+/// The result of comparing a picture with its scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grade {
     /// The number of all pixels.
     pub pixels: usize,
-    /// In what ways pixels differ, that of the most pixels first.
+    /// The ways in which pixels differ, that of the most pixels first.
     pub findings: Vec<Finding>,
 }
 
@@ -98,7 +98,7 @@ fn gathered(found: Vec<([usize; 2], Mistake)>, [width, height]: [usize; 2]) -> V
         }
     }
     let mut findings: Vec<_> = kinds.into_values().collect();
-    // Of as many pixels, the order is that of the kinds.
+    // Findings with as many pixels are in the order of their mistakes.
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.pixels));
     findings
 }

@@ -1,5 +1,5 @@
-//! Mistakes about single pixels: the scene is changed, and a change explains a pixel where the changed scene shows what the
-//! picture has.
+//! Mistakes about single pixels: the scene is changed, and a change explains a pixel where the changed scene shows
+//! the picture's colour.
 
 use super::compared::{Compared, apart};
 use super::mistake::Mistake;
@@ -24,7 +24,7 @@ const MOST_LIGHTS: usize = 6;
 /// The number of objects that are taken away, one behind the other.
 const DEEPEST: usize = 3;
 
-/// By how many levels a pixel beside may differ, whose object is seen one pixel too far.
+/// The number of levels by which a pixel may differ from a neighbour whose object is seen one pixel too far.
 const BESIDE: u8 = 4;
 
 /// A change of the scene.
@@ -40,21 +40,21 @@ enum Trial {
     Without(Vec<usize>),
 }
 
-/// What the scene shows at a pixel.
+/// The scene at a pixel.
 struct Seen {
     at: [usize; 2],
     object: Option<usize>,
-    /// The lights that shine on the object, and those that others are in the way of.
+    /// The lights that shine on the object, and those that other objects block.
     shining: Vec<usize>,
     blocked: Vec<usize>,
-    /// What explains the pixel, if anything does.
+    /// The mistake that explains the pixel, if there is one, and its rank.
     mistake: Option<(usize, Mistake)>,
     /// The light of the pixel, and that without any glint.
     light: Rgb,
     dull: Option<Rgb>,
 }
 
-/// Changes scenes, and looks at pixels of them.
+/// Changes scenes, and looks at their pixels.
 struct Trials<'t, E> {
     renderer: &'t Renderer,
     compared: &'t Compared<'t>,
@@ -88,8 +88,8 @@ pub(super) fn explain<E>(
 }
 
 impl<E> Trials<'_, E> {
-    /// Looks at pixels, by their indices, of the changed scene; `each` is given the index, what is asked with it, the light and
-    /// the object.
+    /// Looks at pixels of the changed scene, by their indices. `each` gets the index, the value that was passed with
+    /// it, the light and the object.
     fn run<T: Copy + Sync>(
         &mut self,
         trial: &Trial,
@@ -121,7 +121,7 @@ impl<E> Trials<'_, E> {
         apart(view.shown(compared, light), compared.theirs(at)) <= 1
     }
 
-    /// Tries lights that shine where they do not, and the other way round, and no glints.
+    /// Tries lights that shine where they should not, or do not where they should, and missing glints.
     fn of_light(&mut self, pixels: &mut [Seen]) -> Result<(), E> {
         let mut asked: BTreeMap<Trial, Vec<(usize, usize)>> = BTreeMap::new();
         for (index, pixel) in pixels.iter().enumerate() {
@@ -186,7 +186,7 @@ impl<E> Trials<'_, E> {
 }
 
 impl Trial {
-    /// Changes a scene, and returns what the indices of its objects were before.
+    /// Changes a scene, and returns the former indices of its objects.
     fn change(&self, model: &mut Model) -> Vec<usize> {
         let all = model.objects.len();
         let keep = |model: &mut Model, is_kept: &dyn Fn(usize) -> bool| -> Vec<usize> {
@@ -231,7 +231,7 @@ impl Seen {
         Self { at, object: object.flatten(), shining, blocked, mistake: None, light, dull: None }
     }
 
-    /// Returns changes of light that may explain the pixel, with what each says, the likeliest first.
+    /// Returns changes of light that may explain the pixel, with the mistake of each, the likeliest first.
     fn candidates(&self) -> Vec<(Trial, Mistake)> {
         let Some(on) = self.object else { return Vec::new() };
         let mut all = Vec::new();
@@ -285,7 +285,7 @@ impl Seen {
     }
 }
 
-/// Explains pixels by more or less of a glint, and then those beside them, where the scene has next to none.
+/// Explains pixels by more or less of a glint, and then those beside them, where the scene has hardly any.
 fn of_glints(compared: &Compared, view: View, pixels: &mut [Seen]) {
     let mut known: BTreeSet<usize> = BTreeSet::new();
     for is_beside in [false, true] {

@@ -30,12 +30,12 @@ pub enum Curve {
     Swapped,
 }
 
-/// How a picture as a whole is seen.
+/// The way in which a picture as a whole is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct View {
     /// Whether columns, and whether rows, go the other way.
     pub flipped: [bool; 2],
-    /// By how much it is shifted to the right and up, in halves of a pixel.
+    /// The shift to the right and up, in halves of a pixel.
     pub shift: [i32; 2],
     /// The curve of its levels.
     pub curve: Curve,
@@ -63,12 +63,12 @@ impl Curve {
 }
 
 impl View {
-    /// Returns the views that are tried, but for the right one.
+    /// Returns the views that are tried, except the right one.
     fn others(is_sampled: bool) -> impl Iterator<Item = Self> {
         let flips = [[true, false], [false, true], [true, true]];
         let flips = flips.into_iter().map(|flipped| Self { flipped, ..Self::default() });
         let curves = Curve::OTHERS.into_iter().map(|curve| Self { curve, ..Self::default() });
-        // Halves are rendered, which one sample alone allows.
+        // Shifts by halves must be rendered, which only works with one sample.
         let halves = move |part: &i32| part % 2 == 0 || (!is_sampled && part.abs() == 1);
         let steps = move || (-2 * FARTHEST..=2 * FARTHEST).filter(halves);
         let shifts = steps().flat_map(move |right| steps().map(move |up| [right, up]));
@@ -76,8 +76,8 @@ impl View {
         flips.chain(curves).chain(shifts)
     }
 
-    /// Returns the view that explains most of the pixels that differ, if it explains more than half of them and few others
-    /// speak against it; else the right one.
+    /// Returns the view that explains most of the pixels that differ, if it explains more than half of them and few
+    /// others speak against it; else the right one.
     pub(super) fn best(renderer: &Renderer, compared: &Compared, different: &[[usize; 2]]) -> Self {
         if different.is_empty() {
             return Self::default();
@@ -107,7 +107,7 @@ impl View {
         iter::zip(views, gains).fold(none, |best, other| if other.1 > best.1 { other } else { best }).0
     }
 
-    /// Returns the bytes that the picture then has at a pixel; `None` beyond the edge of the image.
+    /// Returns the bytes of the picture at a pixel in this view; `None` beyond the edge of the image.
     pub(super) fn bytes(&self, compared: &Compared, at: [usize; 2]) -> Option<[u8; 3]> {
         if self.curve == Curve::Right
             && self.shift.iter().all(|part| part % 2 == 0)
@@ -118,14 +118,14 @@ impl View {
         self.light(compared.plan, at).map(|light| self.shown(compared, light))
     }
 
-    /// Returns the column or the row of the right image that is seen at a pixel, where shifts are whole.
+    /// Returns the column or the row of the right image that is seen at a pixel, where shifts are whole pixels.
     fn whole(&self, compared: &Compared, at: [usize; 2], axis: usize) -> Option<usize> {
         let size = compared.size[axis];
         let own = if self.flipped[axis] { size - 1 - at[axis] } else { at[axis] };
         own.checked_add_signed(-(self.shift[axis] / 2) as isize).filter(|own| *own < size)
     }
 
-    /// Returns where a pixel's centre is in the right image, in pixels; `None` beyond its edge.
+    /// Returns the position of a pixel's centre in the right image, in pixels; `None` beyond its edge.
     fn place(&self, plan: &Plan, at: [usize; 2]) -> Option<[f64; 2]> {
         let size = plan.camera.pixels;
         let place = [0, 1].map(|axis| {
@@ -150,7 +150,7 @@ impl View {
         })
     }
 
-    /// Returns the bytes in which the picture then shows light.
+    /// Returns the bytes with which the picture shows light in this view.
     pub(super) fn shown(&self, compared: &Compared, light: Rgb) -> [u8; 3] {
         match self.curve {
             Curve::Right => compared.display.bytes(light),

@@ -30,7 +30,7 @@ pub(super) struct Answered<'m> {
     pub surface: Option<Surroundings>,
 }
 
-/// An answer, as JSON has it.
+/// An answer in the form of JSON.
 #[derive(Serialize)]
 struct Line<'m> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -142,8 +142,8 @@ impl<'m> Answered<'m> {
 }
 
 impl AnswerFormat {
-    /// Writes the text before the answers. An array needs the number of answers. `are_all` says whether a ray may have
-    /// several.
+    /// Writes the text before the answers. An array needs the number of answers. `are_all` says whether a ray may
+    /// have several answers.
     ///
     /// # Errors
     /// Returns the errors of `out`, and for an array, an error where the number is not known.

@@ -1,7 +1,9 @@
-//! Rays aimed at the places where methods fail: at outlines, edges, seams and corners, and beside them by ever less.
+//! Rays aimed at the places where methods fail: at outlines, edges, seams and corners, and beside them at ever
+//! smaller distances.
 //!
-//! Places are found by asking what is hit, without knowing any shape: between a ray that hits one thing and a ray that hits
-//! another lies one that passes between them, and in a triangle of three such rays lies a corner, where three things meet.
+//! Places are found from hits alone, without knowing any shape: between two rays with different hits lies a ray that
+//! passes between the things that they hit, and in a triangle of three such rays lies a corner, where three things
+//! meet.
 
 use super::answers::AnswerFormat;
 use glam::DVec3;
@@ -15,10 +17,11 @@ use tabray_core::output;
 use tabray_core::query::{ExactRay, Query};
 use tabray_core::render::Renderer;
 
-/// What a ray is aimed at.
+/// The target of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// The outline of an object before another or before nothing: a smooth surface is touched there, or an edge met.
+    /// The outline of an object before another or before nothing: the ray touches a smooth surface there, or meets an
+    /// edge.
     Outline,
     /// The line where two objects meet.
     Seam,
@@ -47,16 +50,17 @@ pub struct HardRay {
     pub origin: DVec3,
     /// The direction, not a unit vector.
     pub dir: DVec3,
-    /// What it is aimed at.
+    /// The target.
     pub place: Place,
-    /// How far beside the place it passes, as a part of the size of the scene's object; 0 for the place itself, up to rounding.
+    /// The distance at which it passes the place, as a part of the size of the scene's object; 0 for the place
+    /// itself, up to rounding.
     pub offset: f64,
 }
 
 /// The number of places that are looked for at one time.
 const TOGETHER: usize = 256;
 
-/// The number of rays of which three may lie around a corner.
+/// The number of rays among which three around a corner are looked for.
 const ENDS: usize = 8;
 
 /// The number of times that a distance is halved: more than f64 has digits for.
@@ -66,23 +70,23 @@ const HALVINGS: usize = 60;
 const OFFSETS: [f64; 14] =
     [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15];
 
-/// How near three rays must come for their place to be a corner, as a part of the size of what they are aimed at.
+/// The distance below which three rays show a corner, as a part of the size of their target.
 const NEAR: f64 = 1e-12;
 
-/// The number of rounds without any place after which there is none to be found.
+/// The number of rounds without any place after which the search ends.
 const IN_VAIN: usize = 20;
 
-/// What a ray hits: the object and the face, or nothing.
+/// The hit of a ray: the object and the face, or nothing.
 type Label = Option<(usize, Option<u32>)>;
 
-/// A point that a ray leads through, and what it hits.
+/// A point that a ray leads through, and its hit.
 type End = (DVec3, Label);
 
-/// Rays from one point to places that do not show the same.
+/// Rays from one point to places with different hits.
 struct Search {
     origin: DVec3,
     ends: Vec<End>,
-    /// The size of what the rays are aimed at.
+    /// The size of the rays' target.
     size: f64,
 }
 
@@ -106,7 +110,8 @@ pub fn rays(renderer: &Renderer, query: &Query, count: usize, seed: u64) -> Vec<
     rays
 }
 
-/// Returns the boxes around the objects; that of the others, which have no bounds, is around all, or around the origin.
+/// Returns the boxes around the objects. The box of an object without bounds is around all others, or around the
+/// origin.
 fn boxes(query: &Query) -> Vec<Aabb> {
     let bounds = query.model().objects.iter().map(|object| object.shape.facts().bounds);
     let finite = |bounds: &Aabb| (bounds.high - bounds.low).is_finite();
@@ -143,7 +148,7 @@ impl Random {
         let (middle, half) = (bounds.middle(), bounds.half_size());
         let size = half.length();
         let origin = middle + (1.5 + 2.0 * self.part().abs()) * size * self.in_ball().normalize();
-        // Three of many show corners, and two of them lines.
+        // Three of many rays show corners, and two rays show lines.
         let count = if self.part() < 0.0 { 2 } else { ENDS };
         let ends = (0..count).map(|_| (middle + 1.3 * half * self.in_ball(), None)).collect();
         Search { origin, ends, size }
@@ -166,7 +171,8 @@ impl Random {
 }
 
 impl Search {
-    /// Draws the ends of the rays together, until they are one place up to rounding; `None` where all show the same.
+    /// Draws the ends of the rays together, until they are one place up to rounding; `None` where all have the same
+    /// hit.
     fn run(&mut self, query: &Query) -> Option<Place> {
         let points: Vec<_> = self.ends.iter().map(|(at, _)| *at).collect();
         let labels = self.labels(query, &points);
@@ -189,7 +195,7 @@ impl Search {
         Some(self.between(query))
     }
 
-    /// Returns what the rays through some points hit.
+    /// Returns the hits of the rays through some points.
     fn labels(&self, query: &Query, points: &[DVec3]) -> Vec<Label> {
         let ray = |at: &DVec3| ExactRay::new(self.origin, *at - self.origin);
         let rays: Option<Vec<_>> = points.iter().map(ray).collect();
@@ -201,8 +207,8 @@ impl Search {
         rays.iter().zip(query.traced(&rays)).map(label).collect()
     }
 
-    /// Follows the border of the first thing from where it meets the second to where it meets the third. Tells whether that
-    /// leads to one place.
+    /// Follows the border of the first thing from where it meets the second to where it meets the third. Tells
+    /// whether that leads to one place.
     fn corner(&mut self, query: &Query) -> bool {
         let [inner, b, c] = self.ends[..] else { return false };
         let [mut one, mut other] = [b, c].map(|outer| self.border(query, inner, outer, 0.0)[1]);
@@ -225,7 +231,7 @@ impl Search {
         one.1 != other.1 && (one.0 - other.0).length() < NEAR * self.size
     }
 
-    /// Halves the distance between two rays that hit different things, until it is at most `width` world units or cannot be
+    /// Halves the distance between two rays with different hits, until it is at most `width` world units or cannot be
     /// halved.
     fn border(&self, query: &Query, inner: End, outer: End, width: f64) -> [End; 2] {
         let [mut inner, mut outer] = [inner, outer];
@@ -241,14 +247,14 @@ impl Search {
         [inner, outer]
     }
 
-    /// Returns what lies between two rays.
+    /// Returns the kind of the place between two rays.
     fn between(&self, query: &Query) -> Place {
         let ray = |at: DVec3| ExactRay::new(self.origin, at - self.origin);
         let rays: Vec<_> = self.ends.iter().filter_map(|(at, _)| ray(*at)).collect();
         let answers = query.traced(&rays);
         let [one, other] = &answers[..] else { return Place::Outline };
         let (Some(first), Some(second)) = (one.object, other.object) else { return Place::Outline };
-        // Of the sides of an outline, one is farther.
+        // One side of an outline is farther away than the other.
         match (one.distance - other.distance).abs() > 1e-6 * self.size {
             true => Place::Outline,
             false if first == second => Place::Edge,

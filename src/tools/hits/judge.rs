@@ -10,7 +10,7 @@ use tabray_core::query::{Answer, Crossing, Query, Verdict};
 use tabray_core::render::Renderer;
 use tabray_exact::interval::Interval;
 
-/// What an answer turns out to be.
+/// The judgement on an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Finding {
@@ -33,7 +33,7 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// All, the worst ones first.
+    /// All judgements, the worst ones first.
     pub const ALL: [Self; 8] = [
         Self::Missed,
         Self::Invented,
@@ -45,7 +45,7 @@ impl Finding {
         Self::Right,
     ];
 
-    /// Returns what it means, in lower case.
+    /// Returns the meaning, in lower case.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Missed => "missed a surface that is hit",
@@ -68,44 +68,44 @@ impl Finding {
 /// A judged answer.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// What it turned out to be.
+    /// The judgement.
     pub finding: Finding,
     /// The number of the answer, from 1.
     pub number: u64,
-    /// What was answered.
+    /// The answer.
     pub theirs: TheirAnswer,
-    /// What is proven.
+    /// The proof's answer.
     pub ours: Answer,
-    /// How far their t is at least from the real one, in units in the last place of f64 and of f32, if both are known.
+    /// A lower bound on the error of their t, in units in the last place of f64 and of f32, if both are known.
     pub ulps: Option<[f64; 2]>,
 }
 
 /// The errors of t of right answers, counted by the powers of 2 between which they are.
 #[derive(Clone, Debug)]
 pub struct Errors {
-    /// How many are 0, at most 1, at most 2, at most 4 and so on.
+    /// The numbers of errors that are 0, at most 1, at most 2, at most 4 and so on.
     counts: [u64; 66],
     /// The largest.
     pub most: f64,
 }
 
-/// What the answers turned out to be.
+/// The judgements on all answers.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// How many answers of each kind there are, in the order of [`Finding::ALL`].
+    /// The numbers of answers of each kind, in the order of [`Finding::ALL`].
     pub counts: [u64; 8],
     /// The errors of t, in units in the last place of f64 and of f32.
     pub errors: [Errors; 2],
     /// The worst of the wrong answers, at most [`WORST`].
     pub worst: Vec<Judged>,
-    /// How many lines were no answers.
+    /// The number of lines that were not answers.
     pub bad: u64,
 }
 
 /// The maximum number of wrong answers that are shown.
 pub const WORST: usize = 20;
 
-/// The maximum number of bad lines that are told.
+/// The maximum number of bad lines that are reported.
 const TOLD: usize = 10;
 
 impl Errors {
@@ -153,7 +153,7 @@ impl Report {
         }
     }
 
-    /// Leaves the worst answers: by their kinds, and of a kind those with the largest errors.
+    /// Keeps the worst answers: by their kinds, and among those of a kind the ones with the largest errors.
     fn keep_worst(&mut self) {
         let error = |judged: &Judged| judged.ulps.map_or(f64::INFINITY, |[ulps, _]| ulps);
         self.worst.sort_by(|one, other| {
@@ -164,8 +164,8 @@ impl Report {
     }
 }
 
-/// Judges all answers of a reader. A t is right within `tolerance` times the real t. `each` is called with each wrong answer, in
-/// their order.
+/// Judges all answers of a reader. A t is right within `tolerance` times the real t. `each` is called with each wrong
+/// answer, in their order.
 ///
 /// # Errors
 /// Returns the first lines that are not answers, unless `skip_bad` is set.
@@ -216,7 +216,7 @@ pub fn read(
     }
 }
 
-/// Judges an answer, given what is proven.
+/// Judges an answer, given the proof's.
 fn judged(query: &Query, theirs: &TheirAnswer, ours: Answer, tolerance: f64) -> Judged {
     let ours = ours.within(theirs.row.t_max.unwrap_or(f64::INFINITY));
     let ulps = theirs.t.filter(|_| ours.bounds.high.is_finite()).map(|t| {
@@ -262,7 +262,7 @@ fn finding(query: &Query, theirs: &TheirAnswer, ours: &Answer, tolerance: f64) -
     }
 }
 
-/// Judges what is named at the right place.
+/// Judges the object and the face that an answer at the right place names.
 fn of_names(query: &Query, theirs: &TheirAnswer, ours: &Answer, tolerance: f64) -> Finding {
     let is_other = |object: usize| match &theirs.object {
         None => false,
@@ -285,7 +285,7 @@ fn of_names(query: &Query, theirs: &TheirAnswer, ours: &Answer, tolerance: f64) 
     }
 }
 
-/// Returns how far a number is from an interval.
+/// Returns the distance of a number from an interval.
 fn distance(t: f64, Interval { low, high }: Interval) -> f64 {
     (low - t).max(t - high).max(0.0)
 }

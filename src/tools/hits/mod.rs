@@ -1,5 +1,5 @@
-//! Answers what rays hit: rays are read as text, CSV, JSON lines or a NumPy array, and answers are written as CSV, JSON lines or
-//! a NumPy array.
+//! Finds the hits of rays: rays are read as text, CSV, JSON lines or a NumPy array, and answers are written as CSV,
+//! JSON lines or a NumPy array.
 
 pub mod answers;
 pub mod hard;
@@ -19,10 +19,10 @@ use tabray_core::render::Renderer;
 /// The number of rays that are answered before any of their answers is written: enough for all threads, and little memory.
 const TOGETHER: usize = 64 * PACKET_SIZE;
 
-/// The maximum number of bad rays that are told.
+/// The maximum number of bad rays that are reported.
 const TOLD: usize = 10;
 
-/// What is asked of the rays.
+/// The questions about the rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
     /// Whether nothing is proven.
@@ -31,27 +31,27 @@ pub struct Asked {
     pub tight: bool,
     /// Whether each ray has an answer for each surface that it crosses, and one for what is behind the last.
     pub all: bool,
-    /// Whether it is only of interest that something is hit, not what.
+    /// Whether it only matters that something is hit, not what.
     pub any: bool,
     /// The end of rays that have none of their own, in the unit of their t.
     pub t_max: f64,
-    /// Whether rays that are none are left out.
+    /// Whether invalid rays are left out.
     pub skip_bad: bool,
 }
 
-/// How many rays were answered, and how many left out.
+/// The numbers of rays that were answered, and of those that were left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// The answers.
+    /// The number of answered rays.
     pub answered: u64,
-    /// The rays that were none.
+    /// The number of invalid rays.
     pub bad: u64,
 }
 
-/// Why answers end early.
+/// The reason why answers end early.
 #[derive(Debug)]
 pub enum Ended {
-    /// Some rays are none: the first ones.
+    /// Some rays are invalid; the first of them.
     Bad(Vec<BadRay>),
     /// The answers cannot be written.
     Unwritten(io::Error),
@@ -60,8 +60,8 @@ pub enum Ended {
 /// A ray that is asked about, and the t at which it ends.
 type Ray = (ExactRay, f64);
 
-/// Answers all rays of a reader, in their order. The answers depend on the rays alone, not on the threads. `step` is told
-/// how many rays are done.
+/// Answers all rays of a reader, in their order. The answers depend on the rays alone, not on the threads. `step`
+/// gets the number of rays that are done.
 ///
 /// # Errors
 /// Returns the first invalid rays, unless `skip_bad` is set, and the errors of the output.
@@ -76,7 +76,7 @@ pub fn read(
     let (mut tally, mut bad) = (Tally::default(), Vec::new());
     loop {
         let (mut part, mut is_over): (Vec<Ray>, bool) = (Vec::new(), false);
-        // Who asks through a pipe may wait for an answer before the next ray.
+        // A program that asks through a pipe may wait for an answer before it sends the next ray.
         while part.len() < TOGETHER && bad.len() < TOLD && (part.is_empty() || rays.has_more()) {
             match rays.next() {
                 None => {
@@ -129,7 +129,7 @@ pub fn of_camera(
     Ok(tally)
 }
 
-/// Answers rays; `first` is the number of the first of them.
+/// Answers rays; `first` is the number of the first ray.
 fn answer(
     renderer: &Renderer,
     query: &Query,

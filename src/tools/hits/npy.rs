@@ -1,5 +1,5 @@
-//! NumPy arrays of rays and of answers, in NumPy's own format ("NPY format", versions 1 to 3). The crates that read it bring
-//! a parser of Python's literals that needs a C compiler.
+//! NumPy arrays of rays and of answers, in NumPy's own format ("NPY format", versions 1 to 3). The crates that read
+//! it bring a parser of Python's literals that needs a C compiler.
 
 use std::io::{self, BufRead, Read};
 use tabray_core::output::npy::MAGIC;
@@ -8,13 +8,13 @@ use tabray_core::text::reason;
 /// The origin, the direction and the end of a ray.
 pub(super) type Numbers = ([f64; 6], Option<f64>);
 
-/// The maximum length of a head, in bytes.
+/// The maximum length of a header, in bytes.
 const LONGEST: usize = 1 << 12;
 
 /// The rows of an array of rays.
 pub(super) struct Rows<'r> {
     input: Box<dyn BufRead + 'r>,
-    /// The size of a number in bytes, 4 or 8, and whether its first byte is the lowest.
+    /// The size of a number in bytes, 4 or 8, and whether numbers are little-endian.
     size: usize,
     is_little: bool,
     columns: usize,
@@ -23,7 +23,7 @@ pub(super) struct Rows<'r> {
 }
 
 impl<'r> Rows<'r> {
-    /// Reads the head of an array.
+    /// Reads the header of an array.
     pub fn new(mut input: Box<dyn BufRead + 'r>) -> Result<Self, String> {
         let head = head(&mut input).map_err(|error| match error.kind() {
             io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => "it is not a NumPy array".to_owned(),
@@ -86,7 +86,7 @@ impl<'r> Rows<'r> {
     }
 }
 
-/// Reads the head of a file: the text of a Python dictionary.
+/// Reads the header of a file: the text of a Python dictionary.
 fn head(input: &mut dyn BufRead) -> io::Result<String> {
     let invalid = || io::Error::from(io::ErrorKind::InvalidData);
     let mut start = [0; 8];
@@ -102,7 +102,7 @@ fn head(input: &mut dyn BufRead) -> io::Result<String> {
     String::from_utf8(text).map_err(|_| invalid())
 }
 
-/// Returns the text of a value in a head.
+/// Returns the text of a value in a header.
 fn value<'h>(head: &'h str, key: &str) -> Option<&'h str> {
     let (_, rest) = head.split_once(&format!("'{key}':"))?;
     let rest = rest.trim_start();
@@ -129,7 +129,7 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// The number of bytes of a record: two, two whole numbers, and twelve others.
+    /// The number of bytes of a record: two bytes, two integers, and twelve other numbers.
     const SIZE: usize = 2 + 2 * 4 + 12 * 8;
 
     /// Appends the bytes of the record.

@@ -12,7 +12,7 @@ use tabray_core::text::reason;
 /// The maximum length of a line, in bytes: more than any six numbers have.
 const LONGEST: u64 = 1 << 12;
 
-/// How rays are written.
+/// The formats of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayFormat {
     /// Six numbers a line: the origin and the direction; a seventh is the t at which the ray ends. `#` begins a comment.
@@ -25,7 +25,7 @@ pub enum RayFormat {
     Npy,
 }
 
-/// A ray, and the t at which it ends if it does.
+/// A ray, and the t at which it ends, if it does.
 #[derive(Clone, Debug)]
 pub struct RayRow {
     /// The ray.
@@ -34,14 +34,14 @@ pub struct RayRow {
     pub t_max: Option<f64>,
 }
 
-/// Something that is no ray.
+/// An invalid ray.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadRay {
     /// Its line, or its row in an array, from 1.
     pub number: u64,
     /// `line` or `row`.
     pub unit: &'static str,
-    /// What is wrong, in lower case.
+    /// The fault, in lower case.
     pub message: String,
     /// Whether nothing can be read after it.
     pub is_last: bool,
@@ -61,7 +61,7 @@ pub struct RayReader<'r> {
     is_over: bool,
 }
 
-/// What rays are read from.
+/// The input of rays.
 pub type Input<'r> = BufReader<Box<dyn Read + 'r>>;
 
 enum Rows<'r> {
@@ -69,10 +69,10 @@ enum Rows<'r> {
     Npy(npy::Rows<'r>),
 }
 
-/// How a line stands for a ray.
+/// The form of a ray on a line.
 enum LineForm {
     Text,
-    /// In which columns the numbers of [`COLUMNS`] are.
+    /// The columns of the numbers of [`COLUMNS`].
     Csv([Option<usize>; 7]),
     Json,
 }
@@ -84,7 +84,7 @@ impl<'r> RayReader<'r> {
     /// Starts to read, in a format or in the one that the first bytes show.
     ///
     /// # Errors
-    /// Returns an error where the input cannot be read, or where its head is not one of the format.
+    /// Returns an error where the input cannot be read, or where its header is not that of the format.
     pub fn new(mut input: Input<'r>, format: Option<RayFormat>) -> Result<Self, BadRay> {
         let bad = |number, unit, message| BadRay { number, unit, message, is_last: true };
         let format = match format {
@@ -118,7 +118,7 @@ impl<'r> RayReader<'r> {
         }
     }
 
-    /// Tells whether more can be read without waiting for it, as far as that is known.
+    /// Tells whether more can be read without waiting, as far as that is known.
     pub fn has_more(&self) -> bool {
         match &self.rows {
             Rows::Lines(input, _) => !input.buffer().is_empty(),
@@ -182,8 +182,8 @@ fn of_content(head: &[u8]) -> RayFormat {
     }
 }
 
-/// Reads the next line that is not empty, and counts all; `None` at the end. `#` may begin a comment. A fault says whether it is
-/// the last.
+/// Reads the next line that is not empty, and counts all lines; `None` at the end. `#` may begin a comment. A fault
+/// says whether it is the last.
 pub(super) fn next_line(
     input: &mut impl BufRead,
     number: &mut u64,
@@ -216,7 +216,7 @@ pub(super) fn fields(line: &str) -> impl Iterator<Item = &str> {
     line.split(',').map(|field| field.trim().trim_matches('"'))
 }
 
-/// Returns in which columns numbers are, by the names of the columns.
+/// Returns the columns of the numbers, given the names of the columns.
 pub(super) fn columns(names: &str) -> Result<[Option<usize>; 7], String> {
     let columns = COLUMNS.map(|column| fields(names).position(|name| name == column));
     let missing = COLUMNS[..6].iter().zip(&columns).filter(|(_, at)| at.is_none());
@@ -266,7 +266,7 @@ pub(super) fn of_record(record: &[&str], columns: &[Option<usize>; 7]) -> Result
     Ok(([a, b, c, d, e, f], (end != f64::INFINITY).then_some(end)))
 }
 
-/// A ray as JSON has it.
+/// A ray in the form of JSON.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Json {
@@ -280,7 +280,7 @@ enum Json {
 }
 
 fn of_json(line: &str) -> Result<Numbers, String> {
-    // An untagged enum does not say where a text is no JSON.
+    // An untagged enum does not say where a text is invalid JSON.
     let value: serde_json::Value = serde_json::from_str(line).map_err(|error| error.to_string())?;
     match serde_json::from_value(value) {
         Ok(Json::List(numbers)) => of_list(&numbers),

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::io::BufRead;
 use tabray_core::text::reason;
 
-/// What another tracer says of a ray.
+/// The answer of another tracer about a ray.
 #[derive(Clone, Debug)]
 pub struct TheirAnswer {
     /// The ray.
@@ -14,11 +14,11 @@ pub struct TheirAnswer {
     pub numbers: [f64; 6],
     /// Whether it hits.
     pub hits: bool,
-    /// The hit, in lengths of the direction, if they say it.
+    /// The hit, in lengths of the direction, if it is given.
     pub t: Option<f64>,
-    /// The object, if they say it.
+    /// The object, if it is given.
     pub object: Option<Object>,
-    /// The index of the face, if they say it.
+    /// The index of the face, if it is given.
     pub face: Option<u64>,
 }
 
@@ -32,7 +32,7 @@ pub enum Object {
     Name(String),
 }
 
-/// In which columns the numbers of a ray and of an answer are.
+/// The columns of the numbers of a ray and of an answer.
 struct Columns {
     ray: [Option<usize>; 7],
     answer: [Option<usize>; 4],
@@ -50,7 +50,7 @@ pub struct TheirReader<'r> {
 /// The columns of an answer.
 const ANSWER: [&str; 4] = ["hit", "t", "object", "face"];
 
-/// An answer as JSON has it.
+/// An answer in the form of JSON.
 #[derive(Deserialize)]
 struct Json {
     origin: [f64; 3],
@@ -64,7 +64,7 @@ struct Json {
 }
 
 impl<'r> TheirReader<'r> {
-    /// Starts to read CSV or JSON lines, which the first bytes tell apart.
+    /// Starts to read CSV or JSON lines. The first bytes tell which.
     ///
     /// # Errors
     /// Returns an error where the input cannot be read, or where the first line of CSV lacks columns.
@@ -127,7 +127,7 @@ impl TheirAnswer {
         face: Option<i64>,
     ) -> Result<Self, String> {
         let row = of_numbers(numbers, t_max)?;
-        // Tracers say that nothing is hit by an infinite or negative t, or by none.
+        // Tracers report a miss by an infinite or negative t, or by none.
         let t = t.filter(|t| t.is_finite() && *t >= 0.0);
         let hits = hit.unwrap_or(t.is_some());
         let face = face.and_then(|face| u64::try_from(face).ok());

@@ -39,7 +39,7 @@ pub struct MoveRequest {
 }
 
 impl MoveRequest {
-    /// Returns where the camera of a model stands after the movement; `None` where it cannot go there.
+    /// Returns the pose of a model's camera after the movement; `None` where it cannot go there.
     pub fn moved(&self, model: &Model) -> Option<CameraPose> {
         let movement = Movement { orbit: self.orbit, pan: self.pan, dolly: self.dolly };
         let camera = model.camera.args.args();
@@ -48,8 +48,8 @@ impl MoveRequest {
     }
 }
 
-/// Returns the point that a pixel shows, in world coordinates; where it shows none, one that is as far away as the camera
-/// looks.
+/// Returns the point that a pixel shows, in world coordinates. Where it shows none, returns a point at the distance
+/// at which the camera looks.
 pub fn point(model: &Model, [x, y]: [usize; 2]) -> [f64; 3] {
     let sensor = &model.camera.value;
     let hit = trace::first_hit(&Plan::new(model), &sensor.sight(x as f64, y as f64));
@@ -57,7 +57,7 @@ pub fn point(model: &Model, [x, y]: [usize; 2]) -> [f64; 3] {
     hit.map_or_else(far, |hit| hit.point).to_array()
 }
 
-/// Tells where the camera stands.
+/// Returns the pose of the camera.
 ///
 /// # Errors
 /// Returns why the camera cannot be moved.

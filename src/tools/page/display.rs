@@ -1,4 +1,4 @@
-//! How a page shows light: colours in single precision, and what makes levels of them.
+//! The display of light on a page: colours in single precision, and the settings that make levels of them.
 
 use serde::Serialize;
 use tabray_core::render::bytes::to_byte;
@@ -6,7 +6,7 @@ use tabray_core::scene::choice::Choice;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sensor::Sensor;
 
-/// How light is shown, by the names that scenes have for it.
+/// The settings of the display, by the names that scenes have for them.
 #[derive(Serialize)]
 pub struct Display {
     rules: &'static str,
@@ -17,7 +17,7 @@ pub struct Display {
 }
 
 impl Display {
-    /// Returns how a camera's light is shown.
+    /// Returns the display of a camera's light.
     pub fn of(camera: &Sensor) -> Self {
         Self {
             rules: camera.rules.option().name,
@@ -34,7 +34,7 @@ pub fn singles(colours: &[Rgb]) -> Vec<u8> {
     channels.flat_map(|channel| single(channel).to_le_bytes()).collect()
 }
 
-/// Converts a channel to single precision, rounded such that its byte in the image stays the same.
+/// Converts a channel to single precision, rounded in such a way that its byte in the image stays the same.
 fn single(channel: f64) -> f32 {
     let nearest = channel as f32;
     if to_byte(nearest.into()) == to_byte(channel) {

@@ -1,4 +1,4 @@
-//! What a page lists of a scene: its numbers, and its entities that have some.
+//! The list of a page about a scene: its numbers, and its entities that have some.
 
 use super::fields::{self, Fields, Named};
 use super::{Shown, numbers};
@@ -10,7 +10,7 @@ pub fn all(registry: &Registry, shown: Shown) -> Vec<Named> {
     numbers.into_iter().chain(fields::all(shown.model)).collect()
 }
 
-/// Returns the numbers of what the list calls so; `None` if the scene has none.
+/// Returns the numbers of an entry of the list; `None` if the scene has none.
 pub fn fields(registry: &Registry, shown: Shown, order: &str) -> Option<Fields> {
     match order {
         numbers::ORDER => numbers::of(registry, shown),

@@ -16,7 +16,7 @@ use tabray_lang::syntax::Syntax;
 /// An entity of a scene, or its named numbers.
 #[derive(Serialize)]
 pub struct Named {
-    /// What a page asks for: its index among the scene's entities, from 0, or the word for numbers.
+    /// The key for a page's requests: its index among the scene's entities, from 0, or the word for numbers.
     pub(super) order: String,
     /// Its entity type.
     pub(super) kind: &'static str,

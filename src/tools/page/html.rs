@@ -1,10 +1,10 @@
-//! The page as HTML: what all pages have, and what one of them adds.
+//! The page as HTML: the part of all pages, and the additions of one of them.
 
-/// What all pages have, with slots.
+/// The part of all pages, with slots.
 const PAGE: &str = include_str!("html/page.html");
 const STYLE: &str = include_str!("html/style.css");
 
-/// The scripts that all pages have; those of one are between them.
+/// The scripts of all pages; the scripts of a single page stand between them.
 const FIRST: &str = include_str!("html/state.js");
 const SHARED: &str = concat!(
     include_str!("html/scene.js"),
@@ -19,12 +19,12 @@ const SHARED: &str = concat!(
 );
 const LAST: &str = concat!(include_str!("html/pointer.js"), include_str!("html/keys.js"));
 
-/// The beginning of a line that stands for a slot.
+/// The beginning of a line that marks a slot.
 const SLOT: &str = "<!-- slot: ";
 
-/// What one page has of its own.
+/// The additions of one page.
 pub struct Own<'p> {
-    /// For each slot that is filled, the line of the slot, and what stands there.
+    /// For each slot that is filled, the line of the slot and its content.
     pub html: &'p str,
     /// The style sheet.
     pub style: &'p str,
@@ -34,7 +34,7 @@ pub struct Own<'p> {
     pub scripts: &'p str,
 }
 
-/// Puts a page together. It is one file, so that nothing of it can be missing.
+/// Assembles a page. It is one file, so no part of it can be missing.
 pub fn page(own: &Own) -> String {
     let Own { html, style, link, scripts } = own;
     let (head, body) = PAGE.split_once("<header>").unwrap_or((PAGE, ""));
@@ -44,7 +44,7 @@ pub fn page(own: &Own) -> String {
     )
 }
 
-/// Puts what stands under each slot of `own` into the slot.
+/// Puts the content of each slot of `own` into the slot.
 fn filled(shared: &str, own: &str) -> String {
     let fill = |line| {
         let is_slot = str::starts_with(line, SLOT);

@@ -1,5 +1,5 @@
-//! What a page that shows a scene asks about it, and how it changes the scene's text: shared by the page of `watch` and the
-//! one in a browser alone.
+//! Queries of a page about its scene, and changes of the scene's text: shared by the page of `watch` and the one in a
+//! browser alone.
 
 pub mod camera;
 pub mod display;
@@ -26,7 +26,7 @@ pub struct Shown<'s> {
     pub name: &'s str,
     /// The text of the scene.
     pub text: &'s str,
-    /// The values that are set beside the text.
+    /// The values that are set in addition to the text.
     pub sets: &'s [String],
 }
 

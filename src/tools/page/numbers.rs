@@ -5,14 +5,14 @@ use super::fields::{Field, Fields, Named};
 use tabray_lang::editor::{Item, View, Word};
 use tabray_lang::registry::Registry;
 
-/// What a page calls the numbers where it lists entities.
+/// The word for numbers in a page's list of entities.
 pub const ORDER: &str = "numbers";
 
-/// What stands for the name of an entity where a number is tried out: no entity has this name.
+/// The word in place of an entity's name where a number is tried out: no entity has this name.
 pub const NAME: &str = "";
 
-/// Returns the names of a text's numbers, in its order, and the words of their values. A formula is none of them, nor is what
-/// a `repeat` or another file names.
+/// Returns the names of a text's numbers, in its order, and the words of their values. It leaves out formulas, and
+/// the names of a `repeat` or of another file.
 fn all(view: &View) -> impl Iterator<Item = (Word, Word)> {
     view.items.iter().filter_map(|item| match item {
         Item::Let(number) => {
@@ -49,7 +49,7 @@ pub fn of(registry: &Registry, shown: Shown) -> Option<Fields> {
     (!attributes.is_empty()).then_some(Fields { entity, attributes })
 }
 
-/// Returns the value that is set for a number beside the text: the last one holds.
+/// Returns the value that is set for a number in addition to the text: the last one counts.
 fn set(sets: &[String], name: &str) -> Option<String> {
     let given = |set: &String| {
         let (target, value) = set.split_once('=')?;

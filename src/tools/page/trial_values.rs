@@ -1,4 +1,4 @@
-//! The values that a page tries out beside a scene's text, and how they are written into it.
+//! The values that a page tries out in place of a scene's text, and their way into the text.
 
 use super::numbers;
 use serde::{Deserialize, Serialize};
@@ -29,7 +29,7 @@ pub struct Which {
     pub attribute: String,
 }
 
-/// Values that are tried out and are others than those in the text.
+/// Values that are tried out and differ from those in the text.
 #[derive(Serialize)]
 pub struct Difference {
     /// The name of the object.
@@ -38,7 +38,7 @@ pub struct Difference {
     attribute: String,
     /// The values that are tried out.
     values: Vec<String>,
-    /// Those in the text; empty where it has none.
+    /// The values in the text; empty where it has none.
     text: Vec<String>,
 }
 
@@ -51,7 +51,7 @@ impl TrialValues {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Tries out other values of an attribute. Returns `None` if they are no numbers.
+    /// Tries out other values of an attribute. Returns `None` if they are not numbers.
     pub fn set(&self, body: &[u8]) -> Option<()> {
         let Try { name, attribute, values } = serde_json::from_slice(body).ok()?;
         let are_numbers = values.iter().all(|value| value.parse::<f64>().is_ok()) && !values.is_empty();
@@ -76,7 +76,7 @@ impl TrialValues {
         self.all().is_empty()
     }
 
-    /// Lists the values that are others than those in the text.
+    /// Lists the values that differ from those in the text.
     pub fn differences(&self, view: &View) -> Vec<Difference> {
         let difference = |((name, attribute), values): (&(String, String), &Vec<String>)| {
             let text: Vec<_> =
@@ -146,8 +146,8 @@ pub fn given(view: &View, name: &str, attribute: &str) -> Vec<Word> {
     given.map_or_else(Vec::new, |given| given.values.clone())
 }
 
-/// Writes the values of one attribute, or of a number, into a text, and changes nothing else in it; `None` where the text
-/// does not define it in one place.
+/// Writes the values of one attribute, or of a number, into a text, and changes nothing else in it; `None` where the
+/// text does not define it in one place.
 pub fn write(view: &View, name: &str, attribute: &str, values: &[String]) -> Option<Text> {
     let given = given(view, name, attribute);
     let (Some(first), Some(last)) = (given.first(), given.last()) else {

@@ -17,18 +17,18 @@ pub struct PixelExplained<'m> {
     /// The number of samples of the pixel. The rays are those of the one at its centre.
     samples: u32,
     rays: Vec<RayExplained<'m>>,
-    /// The light of all samples, and what the image shows of it, from 0 to 1.
+    /// The light of all samples, and the shown colour, from 0 to 1.
     light: [f64; 3],
     shown: [f64; 3],
     bytes: [u8; 3],
 }
 
-/// A ray. What there is not is left out.
+/// A ray. Values that it does not have are left out.
 #[derive(Serialize)]
 struct RayExplained<'m> {
     /// `primary`, `reflected`, `transmitted` or `shadow`.
     kind: &'static str,
-    /// The number of the ray that led to this one, under the notes' rules. By the free ones, rays are not nested.
+    /// The number of the ray that led to this one, under the notes' rules. Under the free ones, rays are not nested.
     #[serde(skip_serializing_if = "Option::is_none")]
     from: Option<usize>,
     /// The factor by which its colour is multiplied.
@@ -39,10 +39,10 @@ struct RayExplained<'m> {
     /// The unit vector along the ray.
     #[serde(skip_serializing_if = "Option::is_none")]
     direction: Option<[f64; 3]>,
-    /// Why the ray is not followed.
+    /// The reason why the ray is not followed.
     #[serde(skip_serializing_if = "Option::is_none")]
     dropped: Option<&'static str>,
-    /// What it hits first: the name and the index of the object.
+    /// Its first hit: the name and the index of the object.
     #[serde(skip_serializing_if = "Option::is_none")]
     object: Option<&'m str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -54,7 +54,7 @@ struct RayExplained<'m> {
     point: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     normal: Option<[f64; 3]>,
-    /// What the lights add.
+    /// The contributions of the lights.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     lights: Vec<LightExplained<'m>>,
     /// The surface's own colour, without transmitted and reflected light.
@@ -64,7 +64,7 @@ struct RayExplained<'m> {
     colour: Option<[f64; 3]>,
 }
 
-/// What a light adds to a surface.
+/// The contribution of a light to a surface.
 #[derive(Serialize)]
 struct LightExplained<'m> {
     light: &'m str,
@@ -73,7 +73,7 @@ struct LightExplained<'m> {
     /// The object in its way.
     #[serde(skip_serializing_if = "Option::is_none")]
     blocked_by: Option<&'m str>,
-    /// The part of the light that arrives, and what it adds.
+    /// The part of the light that arrives, and its contribution.
     #[serde(skip_serializing_if = "Option::is_none")]
     passed: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]

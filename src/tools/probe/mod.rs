@@ -1,4 +1,4 @@
-//! Explains one pixel: its rays as an indented tree, with all that was tested, hit and added up on the way.
+//! Explains one pixel: its rays as an indented tree, with all tests, hits and sums on the way.
 
 mod json;
 
@@ -15,12 +15,12 @@ use tabray_core::world::display::Display;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::rules::Rules;
 
-/// The greatest depth of a ray that is still indented farther: between parallel mirrors the indentation would otherwise
-/// fill the line.
+/// The greatest depth of a ray up to which indentation grows: between parallel mirrors it would otherwise fill the
+/// line.
 const MAX_INDENT: usize = 20;
 
-/// Explains a pixel: `x` counts from the left and `y` from the bottom. Of several samples it explains the ray through
-/// the centre of the pixel, and then gives the colour of all.
+/// Explains a pixel: `x` counts from the left and `y` from the bottom. If it has several samples, explains the ray
+/// through the centre of the pixel, and then gives the colour of all samples.
 ///
 /// # Errors
 /// Returns the errors of `out`.
@@ -53,7 +53,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
     Ok(())
 }
 
-/// Writes how a colour becomes bytes of the image.
+/// Writes the steps from a colour to the bytes of the image.
 fn conclude(light: Rgb, display: &Display, out: &mut impl Write) -> io::Result<()> {
     let [r, g, b] = display.bytes(light);
     let [before, after] = match display.truncates() {
@@ -67,7 +67,7 @@ fn conclude(light: Rgb, display: &Display, out: &mut impl Write) -> io::Result<(
 
 struct Probe<'p, W> {
     model: &'p Model,
-    /// Whether the rules are the free ones: then rays are not nested, but follow each other by weight.
+    /// Whether the rules are the free ones. Then rays are not nested, but follow each other by weight.
     is_free: bool,
     /// The number of rays before the current one.
     followed: usize,
@@ -205,7 +205,7 @@ impl<W: Write> Probe<'_, W> {
         self.line("hit", &met);
     }
 
-    /// Returns the distance of a tested object, if it has one, and why that is the first hit or not.
+    /// Returns the distance of a tested object, if it has one, and the reason why it is or is not the first hit.
     fn verdict(
         &self,
         search: &Search,
@@ -214,7 +214,7 @@ impl<W: Write> Probe<'_, W> {
         given: Option<f64>,
     ) -> (String, String) {
         let Some(given) = given else { return (String::new(), "skipped: the ray leaves it".to_owned()) };
-        // The tracer asks only for hits nearer than the nearest so far; here a hit farther away is of interest too.
+        // The tracer asks only for hits nearer than the nearest so far. Here a hit farther away matters, too.
         let whole = || self.model.objects[index].shape.distance(&search.ray, &RayRange::ALL);
         let distance = if given == MISS { whole() } else { given };
         if distance == MISS {

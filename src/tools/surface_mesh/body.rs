@@ -9,24 +9,24 @@ use tabray_core::world::AnyShape;
 use tabray_core::world::certify::gradient;
 use tabray_exact::interval::Interval;
 
-/// By how much cells are larger than they are, as a fraction of the numbers that they are made of: rounding is less.
+/// The margin by which cells are enlarged, as a fraction of the numbers that they are made of: rounding is less.
 const MARGIN: f64 = 1e-12;
 
-/// What is inside of an object.
+/// The inside of an object.
 pub struct Body<'m> {
     shape: &'m AnyShape,
     /// A box around it.
     pub bounds: Aabb,
-    /// Whether its surface has edges of which no gradient tells: it is a solid, or is closed by the faces of its box.
+    /// Whether its surface has edges that gradients do not show: it is a solid, or is closed by the faces of its box.
     has_edges: bool,
     /// Whether the faces of its box close it.
     pub is_capped: bool,
 }
 
-/// Why an object encloses nothing.
+/// The reason why an object encloses nothing.
 #[derive(Debug, PartialEq)]
 pub enum NoBody {
-    /// The scene has no object of this name; with those that it has.
+    /// The scene has no object of this name; the names that it has.
     Unknown(Vec<String>),
     /// Its surface is not closed, for this reason.
     Open(String),
@@ -55,14 +55,15 @@ impl<'m> Body<'m> {
         for object in &objects {
             bounds = bounds.and(&object.shape.facts().bounds.ok_or(NoBody::Unbounded)?);
         }
-        // Of a solid, each part is an object of its own, and each knows the whole.
+        // Each part of a solid is an object of its own, and knows the whole.
         let is_solid = shape.is_of_solid();
         let why = shape.why_not_closed().filter(|_| !is_solid);
         let is_capped = why == Some(CUT_BY_BOX);
         if let Some(why) = why.filter(|_| !is_capped) {
             return Err(NoBody::Open(why.to_owned()));
         }
-        // Of a mesh of many faces, no intervals tell what is inside, and a solid does not tell what it is made of.
+        // For a mesh of many faces, intervals do not tell what is inside, and a solid does not tell what it is made
+        // of.
         let parts = model.patterns.iter().map(|pattern| &pattern.args).filter(|_| is_solid);
         if parts.chain([&first.args]).any(|args| args.entity().reads_files()) {
             return Err(NoBody::Mesh);
@@ -82,14 +83,14 @@ impl<'m> Body<'m> {
         self.shape.contains(at, 0.0)
     }
 
-    /// Tells whether gradients at any two points of a cube are at less than a right angle: the surface in it is a graph over
-    /// a plane. `None` where gradients do not tell.
+    /// Tells whether gradients at any two points of a cube are at less than a right angle: the surface in it is then
+    /// a graph over a plane. `None` where gradients do not tell.
     pub fn is_graph(&self, middle: DVec3, half: f64) -> Option<bool> {
         let proven = self.shape.proven().filter(|_| !self.has_edges)?;
         let half = half + MARGIN * (middle.abs().max_element() + half);
         let at = middle.to_array().map(|at| Interval { low: at - half, high: at + half });
         let gradient: [Interval; 3] = gradient(proven, at, 0);
-        // Products of two different numbers of an interval, and not squares of one.
+        // Products of two different numbers of an interval, not squares of one.
         let products = gradient.map(|Interval { low, high }| (low * low).min(high * high).min(low * high));
         let size = gradient.iter().map(|of| of.low.abs().max(of.high.abs())).fold(0.0, f64::max);
         Some(products.iter().sum::<f64>() > 1e-12 * size * size)

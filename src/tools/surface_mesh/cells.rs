@@ -1,17 +1,17 @@
-//! The cells that a surface may cross: those of a cube that is halved along each axis again and again.
+//! The cells that a surface may cross: those of a cube that is repeatedly halved along each axis.
 
 use super::body::Body;
 use glam::DVec3;
 use tabray_core::parallel;
 
-/// How much larger the cube is than the body.
+/// The size of the cube, in sizes of the body.
 const ROOM: f64 = 1.07;
 
-/// How far the middle of the cube is from that of the body, in sizes of the body: faces and axes of bodies run along planes
-/// of round numbers, where corners of cells would be neither inside nor outside.
+/// The offset of the cube's middle from the body's, in half sizes of the body. Faces and axes of bodies run along
+/// planes of round numbers, where corners of cells would be neither inside nor outside.
 const BESIDE: DVec3 = DVec3::new(0.011_735, 0.017_291, 0.013_377);
 
-/// From how many cells on threads share the work.
+/// The minimum number of cells for which threads share the work.
 const MANY: usize = 64;
 
 /// A cell, or its low corner: the indices along the axes.
@@ -36,7 +36,7 @@ pub struct Cells {
     pub list: Vec<Index>,
 }
 
-/// Returns a number for a cell or a corner.
+/// Returns a key for a cell or a corner.
 pub fn key([x, y, z]: Index) -> u64 {
     (u64::from(z) << 40) | (u64::from(y) << 20) | u64::from(x)
 }
@@ -50,12 +50,12 @@ impl Cells {
         Self { low: middle - size / 2.0, size, halvings: 0, list: vec![[0; 3]] }
     }
 
-    /// Returns how often the cube was halved.
+    /// Returns the number of times that the cube was halved.
     pub fn halvings(&self) -> u32 {
         self.halvings
     }
 
-    /// Returns how often the cube is to be halved until a cell's diagonal is at most this long.
+    /// Returns the number of halvings of the cube after which a cell's diagonal is at most this long.
     pub fn halvings_to(&self, diagonal: f64) -> u32 {
         let mut halvings = 0;
         while libm::scalbn(self.size, -halvings) * 3f64.sqrt() > diagonal && halvings < 64 {
@@ -74,7 +74,7 @@ impl Cells {
         3f64.sqrt() * self.side()
     }
 
-    /// Returns where a corner is.
+    /// Returns the position of a corner.
     pub fn corner(&self, at: Index) -> DVec3 {
         self.low + self.side() * point(at)
     }
@@ -92,7 +92,7 @@ impl Cells {
     /// Cuts each cell into eight, and keeps those that the surface may cross.
     ///
     /// # Errors
-    /// If these are more than so many; the cells stay as they are.
+    /// If these are more than `most`; the cells then stay as they are.
     pub fn halve(&mut self, body: &Body<'_>, most: usize) -> Result<(), ()> {
         let half = self.side() / 4.0;
         let low = self.low;

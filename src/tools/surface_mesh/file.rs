@@ -10,7 +10,7 @@ use tabray_core::named;
 /// A format of meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Binary STL: triangles, and no vertices that they share.
+    /// Binary STL: triangles that share no vertices.
     Stl,
     /// Wavefront's text.
     Obj,
@@ -21,7 +21,7 @@ pub enum Format {
 named!(Format { Stl => "stl", Obj => "obj", Ply => "ply" });
 
 impl Format {
-    /// Returns the format that the name of a file ends in.
+    /// Returns the format that a file's extension names.
     pub fn of_name(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?;
         [(Self::Stl, "stl"), (Self::Obj, "obj"), (Self::Ply, "ply")]

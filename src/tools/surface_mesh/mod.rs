@@ -1,12 +1,12 @@
-//! Meshes of objects: closed surfaces of triangles, each point of which is near the object's surface and the other way
-//! round, as intervals prove.
+//! Meshes of objects: closed surfaces of triangles. Intervals prove that each point of the mesh is near the object's
+//! surface, and each point of the surface near the mesh.
 //!
-//! The object answers one question: whether a cube lies inside of it, outside, or neither for certain. A cube around the
-//! object is halved along each axis until cells that the surface may cross are small. Their corners are inside or outside,
-//! and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell); the triangles that separate
-//! corners inside from corners outside in each are closed and two-manifold, whatever the corners are. Their vertices are
-//! moved along the cells' edges onto the surface. What is proven about the result is so whatever way it was made;
-//! where it is not, cells are halved again, until they are smaller than the error.
+//! The object answers one question: whether a cube lies inside of it, outside, or neither for certain. A cube around
+//! the object is halved along each axis until cells that the surface may cross are small. Their corners are inside or
+//! outside, and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell). The triangles
+//! that separate corners inside from corners outside in each are closed and two-manifold, whatever the corners are.
+//! Their vertices are moved along the cells' edges onto the surface. Proofs about the result hold however it was
+//! made. Where they fail, cells are halved again, until they are smaller than the error.
 
 mod body;
 mod cells;
@@ -32,16 +32,17 @@ const FEWEST: u32 = 4;
 /// The largest number of times: numbers of the files have 24 bits.
 const MOST: u32 = 16;
 
-/// The most cells that the surface may cross, and the bytes that each takes with its triangles, about.
+/// The maximum number of cells that the surface may cross, and the approximate number of bytes that each takes with
+/// its triangles.
 const MOST_CELLS: usize = 1 << 22;
 const CELL: u64 = 400;
 
-/// Returns why there is no mesh.
+/// The reason why there is no mesh.
 #[derive(Debug, PartialEq)]
 pub enum NoMesh {
-    /// Inside of the object there is no corner of a cell, however small: the object may be empty.
+    /// No corner of a cell, however small, is inside the object: it may be empty.
     Empty,
-    /// More cells than are allowed are needed; with the smallest error for which they suffice, about.
+    /// More cells than allowed are needed; the smallest error for which the allowed cells suffice, approximately.
     TooMany(f64),
     /// The error is too small for numbers of single precision.
     TooFine,
@@ -49,9 +50,9 @@ pub enum NoMesh {
     Open,
 }
 
-/// Makes a mesh of a body. Each point of the mesh is at most `error` world units from the surface, and each point of the
-/// surface from the mesh, but for the places that the result lists. `memory` is about the most memory that it may take, in bytes,
-/// if that is limited.
+/// Makes a mesh of a body. Each point of the mesh is at most `error` world units from the surface, and each point of
+/// the surface from the mesh, except at the places that the result lists. `memory` is about the most memory that it
+/// may take, in bytes, if that is limited.
 ///
 /// # Errors
 /// Returns why there is no mesh.
@@ -92,7 +93,7 @@ pub fn mesh(body: &Body<'_>, error: f64, memory: Option<u64>) -> Result<SurfaceM
 impl SurfaceMesh {
     /// Returns the volume inside, in cubic world units.
     pub fn volume(&self) -> f64 {
-        // Around the first vertex, so that a body far from the origin loses no digits.
+        // Around the first vertex, so a body far from the origin loses no digits.
         let origin = self.vertices.first().copied().unwrap_or(DVec3::ZERO);
         let volume = |face: &[u32; 3]| {
             let [a, b, c] = face.map(|corner| self.vertices[corner as usize] - origin);

@@ -1,4 +1,4 @@
-//! What is certain about a mesh: that it is near a body's surface, and the surface near it.
+//! Proofs about a mesh: that it is near a body's surface, and the surface near it.
 
 use super::body::Body;
 use super::cells::Cells;
@@ -6,23 +6,24 @@ use super::triangles::Triangles;
 use glam::DVec3;
 use tabray_core::parallel;
 
-/// How often a triangle or a cell is cut into four or eight before it is given up.
+/// The maximum number of times that a triangle or a cell is cut into four or eight.
 const DEEPEST: u32 = 7;
 
-/// How small against the error a cube may be of which nothing is known.
+/// The size below which an undecided cube is given up, as a fraction of the error.
 const LEAST: f64 = 1.0 / 32.0;
 
-/// From how many cells on threads share the work.
+/// The minimum number of cells for which threads share the work.
 const MANY: usize = 16;
 
-/// The places of which something is not proven.
+/// The places where a proof fails.
 pub struct Proof {
     pub far: Vec<[DVec3; 2]>,
     pub tangled: Option<Vec<[DVec3; 2]>>,
 }
 
-/// Finds the places where the mesh and the surface may be farther from each other than the error, and those where the surface
-/// may turn by a right angle within a cell. Unless all of them are asked for, it ends soon after the first.
+/// Finds the places where the mesh and the surface may be farther from each other than the error, and those where the
+/// surface may turn by a right angle within a cell. Unless all of them are asked for, the search ends soon after the
+/// first.
 pub fn of(cells: &Cells, triangles: &Triangles, body: &Body<'_>, error: f64, all: bool) -> Proof {
     let half = cells.side() / 2.0;
     let cube = |cell: usize| {
@@ -57,7 +58,7 @@ fn near(cells: &Cells, triangles: &Triangles, cell: usize) -> Vec<[DVec3; 3]> {
     let at = cells.list[cell];
     let mut found = Vec::new();
     for part in 0..27 {
-        // A cell below the first one has no number that any other has.
+        // A cell below the first one has a number that no cell has.
         let by = [part % 3, part / 3 % 3, part / 9];
         let other = [0, 1, 2].map(|axis| (at[axis] + by[axis]).wrapping_sub(1));
         if other.contains(&u32::MAX) {
@@ -77,7 +78,7 @@ fn is_near(body: &Body<'_>, triangles: &Triangles, face: usize, error: f64) -> b
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let slack = triangles.faces[face].map(|vertex| triangles.vertices[vertex as usize].slack);
     let slack = slack.into_iter().fold(0.0, f64::max);
-    // No point of a triangle is farther from the nearest corner than in one with equal sides.
+    // A point of a triangle is at most as far from the nearest corner as in a triangle with equal sides.
     if longest / 3f64.sqrt() + slack <= error {
         return true;
     }
@@ -86,7 +87,7 @@ fn is_near(body: &Body<'_>, triangles: &Triangles, face: usize, error: f64) -> b
     normal.is_finite() && is_between(body, corners, normal * error, 0)
 }
 
-/// Tells whether each point of a triangle lies between one inside and one outside, this far from it.
+/// Tells whether each point of a triangle lies between a point inside and a point outside, this far from it.
 fn is_between(body: &Body<'_>, [a, b, c]: [DVec3; 3], outward: DVec3, depth: u32) -> bool {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let (middle, half) = ((low + high) / 2.0, (high - low).max_element() / 2.0);
@@ -115,7 +116,7 @@ fn is_covered(body: &Body<'_>, triangles: &[[DVec3; 3]], middle: DVec3, half: f6
     if half < LEAST * error {
         return false;
     }
-    // What is farther away than this is near no part of the cube.
+    // A triangle farther away than this is near no part of the cube.
     let far = error + half * 3f64.sqrt();
     let near: Vec<_> = triangles
         .iter()

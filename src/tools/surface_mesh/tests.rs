@@ -38,7 +38,7 @@ fn meshed(objects: &str, error: f64) -> SurfaceMesh {
     made
 }
 
-/// Returns the number of vertices and faces less that of edges: 2 for a ball, 0 for a ring.
+/// Returns the number of vertices and faces minus that of edges: 2 for a ball, 0 for a ring.
 fn characteristic(mesh: &SurfaceMesh) -> i64 {
     mesh.vertices.len() as i64 - mesh.faces.len() as i64 / 2
 }

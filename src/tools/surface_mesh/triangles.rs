@@ -9,22 +9,22 @@ use tabray_core::parallel;
 /// The axes along which the edges of the six tetrahedra run from the low corner of a cell to the high one.
 const WAYS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
-/// How often the part of an edge that the surface crosses is halved.
+/// The number of times that the part of an edge that the surface crosses is halved.
 const HALVINGS: u32 = 30;
 
-/// How near to an end of its edge a vertex may be, in edges, so that no triangle is without area.
+/// The least distance of a vertex from an end of its edge, in edges, so every triangle has an area.
 const LEAST: f64 = 1.0 / 512.0;
 
-/// How near it may be in steps of single precision.
+/// The same distance in steps of single precision.
 const STEPS: f64 = 8.0;
 
-/// From how many corners, edges or cells on threads share the work.
+/// The minimum number of corners, edges or cells for which threads share the work.
 const MANY: usize = 64;
 
 /// A vertex of a mesh.
 pub struct Vertex {
     pub at: DVec3,
-    /// How far the surface is from it at most; infinity where that is not known.
+    /// A bound on the distance from it to the surface; infinite where that is not known.
     pub slack: f64,
 }
 
@@ -52,7 +52,7 @@ fn ends(edge: Edge) -> [Index; 2] {
 }
 
 impl Triangles {
-    /// Makes the triangles in all cells, in the order of these.
+    /// Makes the triangles in all cells, in the order of the cells.
     pub fn of(cells: &Cells, body: &Body<'_>) -> Self {
         let mut corners: Vec<(u64, Index)> = cells
             .list
@@ -99,7 +99,7 @@ impl Triangles {
         self.faces[face].map(|vertex| self.vertices[vertex as usize].at)
     }
 
-    /// Tells whether each edge is one of two triangles, which agree on their outer side.
+    /// Tells whether each edge belongs to two triangles, which agree on their outer side.
     pub fn is_closed(&self) -> bool {
         let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
         let mut one: Vec<_> = self.faces.iter().flat_map(sides).collect();
@@ -123,7 +123,8 @@ fn in_cell(cell: Index, is_inside: &dyn Fn(Index) -> bool) -> Vec<[Edge; 3]> {
             corners.into_iter().partition(|corner| is_inside(*corner));
         let between = |inside: usize, outside: usize| edge(inner[inside], outer[outside]);
         let mut add = |triangle: [Edge; 3]| {
-            // Between the middles of edges, triangles are turned as between any other of their points.
+            // Triangles between the middles of edges have the same orientation as between any other points of the
+            // edges.
             let [a, b, c] = triangle.map(|edge| ends(edge).map(point).into_iter().sum::<DVec3>());
             let mean =
                 |corners: &[Index]| corners.iter().map(|at| point(*at)).sum::<DVec3>() / corners.len() as f64;
@@ -145,7 +146,7 @@ fn in_cell(cell: Index, is_inside: &dyn Fn(Index) -> bool) -> Vec<[Edge; 3]> {
     triangles
 }
 
-/// Returns the vertex on an edge, given by its ends and the sides on which they are.
+/// Returns the vertex on an edge, given its ends and their sides.
 fn crossing(body: &Body<'_>, [one, other]: [(DVec3, Option<bool>); 2]) -> Vertex {
     let (inner, outer) = if one.1 == Some(true) { (one, other) } else { (other, one) };
     let at = |t: f64| inner.0 + t * (outer.0 - inner.0);
@@ -163,7 +164,7 @@ fn crossing(body: &Body<'_>, [one, other]: [(DVec3, Option<bool>); 2]) -> Vertex
     let step = inner.0.abs().max(outer.0.abs()).max_element() * f64::from(f32::EPSILON);
     let least = LEAST.max(STEPS * step / length).min(0.5);
     let found = at(middle.clamp(least, 1.0 - least)).as_vec3().as_dvec3();
-    // Between a point inside and one outside there is the surface.
+    // The surface lies between a point inside and a point outside.
     let is_certain = inner.1 == Some(true) && outer.1 == Some(false);
     let slack = found.distance(at(low)).max(found.distance(at(high)));
     Vertex { at: found, slack: if is_certain { slack } else { f64::INFINITY } }
