@@ -31,7 +31,7 @@ fn shaped(name: &str, array: &Bound<'_, PyUntypedArray>, right: &str) -> PyErr {
     PyValueError::new_err(format!("`{name}` has the shape ({}{comma}): give {right}", sides.join(", ")))
 }
 
-/// Points or directions: an array of shape (n, 3), or of shape (3,) for one that stands for all.
+/// Points or directions: an array of shape (n, 3), or of shape (3,) for one row that is used for all.
 pub struct Vectors<'py>(Bound<'py, PyUntypedArray>);
 
 /// The rows of an array of points or directions.
@@ -40,7 +40,7 @@ pub enum Rows<'py> {
     F32(PyReadonlyArray2<'py, f32>),
 }
 
-/// A view of them, for other threads.
+/// A view of the rows, for other threads.
 #[derive(Clone, Copy)]
 pub enum View<'a> {
     F64(ArrayView2<'a, f64>),
@@ -96,7 +96,7 @@ impl View<'_> {
     }
 }
 
-/// Takes one number that stands for all rays, or an array with a number for each.
+/// Takes one number for all rays, or an array with a number for each.
 pub fn numbers<'py>(
     object: &Bound<'py, PyAny>,
     name: &str,
@@ -110,7 +110,7 @@ pub fn numbers<'py>(
     }
 }
 
-/// Takes the corners of triangles, an array of integers of shape (m, 3): indices of vertices, of which there are `vertices`.
+/// Takes the corners of triangles: an array of integers of shape (m, 3), indices below `vertices`.
 pub fn faces(object: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
     let array = array(object)?;
     let dtype = array.dtype();

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use tabray_lang::Report;
 
-/// Makes the exception of a report: the text is that of the command line, and the faults are data.
+/// Makes the exception of a report. Its text is that of the command line, and its faults are data.
 pub fn exception(py: Python<'_>, report: &Report) -> PyErr {
     let error = py.import("tabray._errors").and_then(|errors| {
         errors.getattr("SceneError")?.call1((report.to_string().trim_end(), report.json()))

@@ -1,4 +1,4 @@
-//! What rays hit, as arrays.
+//! Hits of rays, as arrays.
 
 use crate::arrays::{Rows, Vectors, View, numbers};
 use crate::work::{Course, How};
@@ -14,10 +14,10 @@ use tabray_core::scene::model::Model;
 use tabray_core::world::certify::Precision;
 use tabray_tools::hits::answers::code;
 
-/// The number of packets whose answers are put into arrays at a time: enough for all threads, and little memory.
+/// The number of packets that are answered at a time: enough for all threads, and little memory.
 const TOGETHER: usize = 256;
 
-/// The number of rays that 237 bits answer between two looks at whether the work ends: about a tenth of a second.
+/// The number of rays that are answered with 237 bits between two checks for a stop: about a tenth of a second.
 const TIGHT: usize = 16;
 
 /// How rays are answered.
@@ -37,7 +37,7 @@ pub struct Rays<'py> {
     ends: Option<PyReadonlyArray1<'py, f64>>,
 }
 
-/// A view of them, for other threads.
+/// A view of the rays, for other threads.
 struct RayView<'a> {
     count: usize,
     origins: View<'a>,
@@ -72,7 +72,7 @@ impl<'py> Rays<'py> {
 }
 
 impl RayView<'_> {
-    /// Returns a ray with the t at which it ends, or what is wrong with it.
+    /// Returns a ray with the t of its end, or a message about its fault.
     fn ray(&self, index: usize) -> Result<(ExactRay, f64), String> {
         let (origin, dir) = (self.origins.row(index), self.directions.row(index));
         let ray = ExactRay::new(origin, dir).ok_or_else(|| match dir == DVec3::ZERO {
@@ -88,10 +88,11 @@ impl RayView<'_> {
     }
 }
 
-/// The answer to one ray.
+/// The answer to one ray, with the surface at its hit.
 type Told = (Answer, Option<Surroundings>);
 
-/// Answers all rays, some at a time, and passes the answers on in the order of the rays. The answers depend on the rays alone.
+/// Answers all rays, some at a time, and passes the answers on in the order of the rays. Each answer depends on its
+/// ray alone.
 fn answer(
     course: &Course,
     query: &Query,
@@ -125,7 +126,7 @@ fn answer(
     Ok(())
 }
 
-/// What rays hit: one array for each property, with one entry for each ray. An entry without a value is -1 or NaN.
+/// The hits of rays: one array for each property, with one entry for each ray. An entry without a value is -1 or NaN.
 #[pyclass(frozen, module = "tabray", get_all)]
 pub struct Hits {
     /// The answer: a `Verdict`. uint8.
@@ -136,7 +137,7 @@ pub struct Hits {
     object: Py<PyArray1<i32>>,
     /// The face of the object, where it has several. int32.
     face: Py<PyArray1<i32>>,
-    /// The hit, in lengths of the ray's direction.
+    /// The t of the hit, in lengths of the ray's direction.
     t: Py<PyArray1<f64>>,
     /// A lower bound of the real t; -inf without a proof.
     t_low: Py<PyArray1<f64>>,
@@ -146,7 +147,7 @@ pub struct Hits {
     distance: Py<PyArray1<f64>>,
     /// The point, rounded. (n, 3).
     point: Py<PyArray2<f64>>,
-    /// The unit normal there, as the shape has it, rounded. (n, 3).
+    /// The unit normal of the shape there, rounded. (n, 3).
     normal: Py<PyArray2<f64>>,
 }
 
@@ -209,7 +210,7 @@ impl Columns {
     }
 }
 
-/// Says what rays hit first.
+/// Finds the first hits of rays.
 pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: Asked, how: &How) -> PyResult<Hits> {
     let rays = rays.view();
     let told = |query: &Query, ray: &ExactRay, answer: Answer, end: f64| {
@@ -224,7 +225,7 @@ pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: Asked, how: &How)
     columns.map_err(PyValueError::new_err)?.into_hits(py)
 }
 
-/// Says for each ray whether anything may be hit before its end.
+/// Tells for each ray whether anything may be hit before its end.
 pub fn occluded<'py>(
     py: Python<'py>,
     model: &Model,

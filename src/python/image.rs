@@ -23,26 +23,25 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{self, count};
 use tempfile::NamedTempFile;
 
-/// An image: its light is an array of shape (height, width, 3), float64: red, green and blue, in rows from the top.
+/// An image. Its light is an array of shape (height, width, 3), float64: red, green and blue, in rows from the top.
 /// `numpy.asarray` accepts an image.
 ///
-/// The light is linear: it is taken before tone, transfer curve and rounding, and under the notes' rules after the
-/// exposure.
+/// The light is linear, before tone, transfer curve and rounding. Under the notes' rules, it includes the exposure.
 #[pyclass(frozen, module = "tabray")]
 pub struct Image {
     size: [usize; 2],
-    /// Red, green and blue of each pixel, the bytes of an image file.
+    /// Red, green and blue of each pixel: the bytes of an image file.
     bytes: Vec<u8>,
     /// The light.
     #[pyo3(get)]
     array: Py<PyArray3<f64>>,
-    /// The distance of what is seen in the middle of each pixel, in world units; inf where nothing is. None unless asked for.
+    /// The distance of the first hit at each pixel's middle, in world units; inf without one. None unless asked for.
     #[pyo3(get)]
     depth: Option<Py<PyArray2<f64>>>,
-    /// The object that is seen there, an index of `Scene.objects`; -1 where none is. int32. None unless asked for.
+    /// The object of that hit, an index of `Scene.objects`; -1 without one. int32. None unless asked for.
     #[pyo3(get)]
     objects: Option<Py<PyArray2<i32>>>,
-    /// The unit normal of what is seen there; 0 where nothing is. (height, width, 3). None unless asked for.
+    /// The unit normal at that hit; 0 without one. (height, width, 3). None unless asked for.
     #[pyo3(get)]
     normals: Option<Py<PyArray3<f64>>>,
 }
@@ -58,7 +57,7 @@ pub struct Wanted {
     pub normals: bool,
 }
 
-/// What is seen in the middle of a pixel: its distance, its object and its normal.
+/// The first hit at the middle of a pixel: its distance, its object and its normal.
 type Seen = (f64, i32, [f64; 3]);
 
 /// Renders an image.
@@ -83,7 +82,7 @@ pub fn render(py: Python<'_>, model: &Model, wanted: &Wanted, how: &How) -> PyRe
         let light = light.into_iter().map(of).collect::<Vec<_>>().into_flattened();
         Some((light, bytes, seen))
     })?;
-    // It ends early only where a signal is raised.
+    // Only an exception ends rendering early, and `run` returns it.
     let (light, bytes, seen) = made.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
     warn(py, &flaws.into_inner().unwrap_or_else(PoisonError::into_inner))?;
     let (flat, deep) = ((height, width), (height, width, 3));
@@ -104,7 +103,7 @@ pub fn render(py: Python<'_>, model: &Model, wanted: &Wanted, how: &How) -> PyRe
     })
 }
 
-/// Returns what is seen in the middles of all pixels.
+/// Returns the first hits at the middles of all pixels.
 fn seen(renderer: &Renderer, plan: &Plan, stops: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Seen>> {
     let [_, height] = plan.camera.pixels;
     let pixel = |x: usize, y: usize| -> Seen {
@@ -147,7 +146,7 @@ impl Image {
     }
 }
 
-/// Writes a file that appears when it is complete.
+/// Writes a file, which appears when it is complete.
 fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
@@ -160,8 +159,9 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 #[pymethods]
 impl Image {
-    /// Writes the image to a file, in the format of its ending: .png or .ppm for the bytes that the command line writes, .exr or
-    /// .pfm for the light, as float32. A file that exists is replaced when the new one is complete.
+    /// Writes the image to a file, in the format of the file name's ending. .png and .ppm have the bytes that the
+    /// command line writes; .exr and .pfm have the light, as float32. An existing file is replaced when the new one
+    /// is complete.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let bytes = match (Format::of(&path), FullRange::of(&path)) {
             (Some(format), _) => self.encoded(format)?,

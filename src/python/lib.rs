@@ -1,6 +1,6 @@
 //! The Python package `tabray`: scenes, images, hits and proofs as NumPy arrays. `docs/python.md` shows its use.
 //!
-//! This is the module `tabray._native`; what is simpler in Python is beside it, in `tabray/`.
+//! This is the module `tabray._native`. Parts that are simpler in Python are in `tabray/`.
 
 mod arrays;
 mod errors;
@@ -14,7 +14,7 @@ mod work;
 // Links the entity types.
 use tabray_plugins as _;
 
-/// What the package does in Rust.
+/// The part of the package in Rust.
 #[pyo3::pymodule]
 mod _native {
     use pyo3::exceptions::PyRuntimeError;

@@ -16,23 +16,24 @@ use tabray_core::shapes::mesh::{Mesh as Shape, Surface};
 use tabray_core::text::count;
 use tabray_core::world::accuracy::{Accuracy, Exact};
 
-/// The number of points that are asked about between two looks at whether the work ends.
+/// The number of points that are tested between two checks for a stop.
 const TOGETHER: usize = 64;
 
-/// A scene of one object. No entity type makes a mesh from arrays, so the object is given its shape afterwards.
+/// A scene of one object. No entity type makes a mesh from arrays, so the object's shape is replaced afterwards.
 const SCENE: &str = "material grey { }  sphere mesh { material grey  center 0 0 0  radius 1 }";
 
-/// A mesh of triangles in memory, which can be asked about rays and points. `tabray.mesh` makes one.
+/// A mesh of triangles in memory, for queries with rays and points. `tabray.mesh` makes one.
 #[pyclass(frozen, module = "tabray")]
 pub struct Mesh {
     surface: Arc<Surface>,
-    /// The surface with its faces turned alike, once it is asked for.
+    /// The surface with its faces turned alike, once it is needed.
     turned: OnceLock<Arc<Surface>>,
     model: Model,
 }
 
-/// Makes a mesh from arrays: vertices of shape (n, 3), numbers of any type, and the corners of triangles, of shape (m, 3),
-/// integers of any type. Coordinates are not rounded. Triangles without an area are left out: no ray hits them.
+/// Makes a mesh from arrays: vertices of shape (n, 3), numbers of any type, and the corners of triangles, of shape
+/// (m, 3), integers of any type. Coordinates are not rounded. Triangles without an area are left out: no ray hits
+/// them.
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, threads=None))]
 pub fn mesh(
@@ -57,7 +58,7 @@ pub fn mesh(
 }
 
 impl Mesh {
-    /// Returns the surface of a closed mesh with its faces turned alike, so that it tells what is inside.
+    /// Returns the surface of a closed mesh with its faces turned alike, which defines its inside.
     fn turned(&self) -> PyResult<Arc<Surface>> {
         if self.surface.is_closed() {
             return Ok(self.surface.clone());
@@ -83,7 +84,7 @@ impl Mesh {
 
 #[pymethods]
 impl Mesh {
-    /// Says what rays hit first, as `Scene.hits` does. The face is the index of the triangle.
+    /// Finds the first hits of rays, as `Scene.hits` does. The face is the index of the triangle.
     #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, tight=false, threads=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn hits<'py>(
@@ -101,7 +102,7 @@ impl Mesh {
         hits::hits(py, &self.model, &rays, Asked { fast, tight }, &How { threads, progress })
     }
 
-    /// Says for each ray whether anything is hit before its end, as `Scene.occluded` does.
+    /// Tells for each ray whether anything is hit before its end, as `Scene.occluded` does.
     #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, threads=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn occluded<'py>(
@@ -118,12 +119,13 @@ impl Mesh {
         hits::occluded(py, &self.model, &rays, fast, &How { threads, progress })
     }
 
-    /// Says for each point whether it is inside: 1 inside, 0 outside, and -1 where 237 bits do not tell, as on the surface. int8.
+    /// Tells for each point whether it is inside: 1 inside, 0 outside, and -1 where 237 bits do not tell, as on the
+    /// surface. int8.
     ///
-    /// It is inside where the mesh winds around it, each crossing of a line from there proven: where the number of bodies that
-    /// hold it, less that of those turned inside out, is not 0, as in a solid. So bodies that overlap are one, and a body turned
-    /// inward within another is a cavity. Faces that are turned against their neighbours are turned alike first, as those of
-    /// files are. The mesh must be closed.
+    /// A point is inside where the mesh winds around it: the number of bodies around it, less that of those turned
+    /// inside out, is not 0. Each crossing of a line from the point is proven. Overlapping bodies are one, and a body
+    /// turned inward within another is a cavity, as in a solid. Faces that are turned against their neighbours are
+    /// turned alike first, as in meshes from files. The mesh must be closed.
     #[pyo3(signature = (points, *, threads=None, progress=None))]
     fn inside<'py>(
         &self,
@@ -155,13 +157,13 @@ impl Mesh {
         Ok(inside.into_pyarray(py))
     }
 
-    /// Whether each edge joins two triangles, or an even number of them.
+    /// Whether the mesh is closed: each edge joins an even number of triangles.
     #[getter]
     fn is_closed(&self) -> bool {
         self.surface.why_not_closed.open == 0
     }
 
-    /// The low and the high corner of a box around the mesh.
+    /// The low and the high corner of a bounding box.
     #[getter]
     fn bounds(&self) -> [[f64; 3]; 2] {
         self.surface.bounds().map(|corner| corner.to_array())

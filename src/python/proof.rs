@@ -1,4 +1,4 @@
-//! Which object each pixel shows, as it is proven.
+//! Proofs of which object each pixel shows.
 
 use crate::work::How;
 use numpy::ndarray::Array2;
@@ -10,14 +10,14 @@ use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_tools::verify::{self, Verdict};
 
-/// What is proven about each pixel: masks of shape (height, width), in rows from the top. At each pixel, one mask is True. A
-/// proof is about the ray through the middle of the pixel.
+/// The verdicts on all pixels: masks of shape (height, width), in rows from the top. Exactly one mask is True at each
+/// pixel. A proof is about the ray through the middle of the pixel.
 #[pyclass(frozen, module = "tabray")]
 pub struct Proof {
     verdicts: Array2<Verdict>,
 }
 
-/// Proves which object each pixel shows, and compares the proof with the object that the tracer finds.
+/// Proves which object each pixel shows, and compares it with the object that the tracer finds.
 pub fn verify(py: Python<'_>, model: &Model, how: &How) -> PyResult<Proof> {
     let [width, height] = model.camera.value.pixels;
     let verdicts = how.run(py, height, |renderer, course| {
@@ -31,7 +31,7 @@ pub fn verify(py: Python<'_>, model: &Model, how: &How) -> PyResult<Proof> {
         let verdicts = pixels.iter().map(|pixel| pixel.verdict).collect();
         Array2::from_shape_vec((height, width), verdicts).ok()
     });
-    // It ends early only where a signal is raised.
+    // Only an exception ends the proof early, and `run` returns it.
     Ok(Proof { verdicts: verdicts.ok_or_else(|| PyKeyboardInterrupt::new_err(()))? })
 }
 
@@ -43,25 +43,26 @@ impl Proof {
 
 #[pymethods]
 impl Proof {
-    /// The pixels that certainly show the object that the tracer finds.
+    /// The pixels at which the tracer finds what is certainly first: an object or nothing.
     #[getter]
     fn proven<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
         self.mask(py, Verdict::Proven)
     }
 
-    /// The pixels at which 237 bits do not tell which object is first, or whether one is touched; the tracer finds one of them.
+    /// The pixels at which 237 bits do not decide which object is first, or whether one is touched. The tracer finds
+    /// one of them.
     #[getter]
     fn tie<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
         self.mask(py, Verdict::Tie)
     }
 
-    /// The pixels that may show a shape without an equation, about which nothing is proven but its bounds.
+    /// The pixels that may show a shape without an equation. Only its bounds are proven.
     #[getter]
     fn undecided<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
         self.mask(py, Verdict::Uncertified)
     }
 
-    /// The pixels at which the tracer finds an object that certainly is not the first.
+    /// The pixels at which the tracer finds an object that is certainly not the first.
     #[getter]
     fn contradicted<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<bool>> {
         self.mask(py, Verdict::Contradicted)

@@ -1,4 +1,4 @@
-//! Scenes: reading them, and asking them.
+//! Scenes: reading, rendering and ray queries.
 
 use crate::errors;
 use crate::hits::{self, Asked, Hits, Rays};
@@ -19,20 +19,20 @@ use tabray_core::world::sample::Sampler;
 use tabray_lang::Registry;
 use tabray_lang::reader::{self, Loaded, ReadOptions, Report};
 
-/// The largest side of an image in pixels, as for `pixeldim`.
+/// The maximum side of an image in pixels, as for `pixeldim`.
 const MAX_SIDE: usize = 100_000;
 
-/// The width of a picture in a notebook, at most, in pixels.
+/// The maximum width of an image in a notebook, in pixels.
 const SHOWN: usize = 640;
 
-/// The text of a scene, from which any number of models can be made.
+/// The text of a scene. Any number of models can be made from it.
 pub struct Source {
-    /// What messages call the scene.
+    /// The name of the scene in messages.
     name: String,
-    /// The folder to which its file names are relative.
+    /// The folder to which file names in the text are relative.
     folder: PathBuf,
     bytes: Vec<u8>,
-    /// The values that are set beside the text, and what messages call them.
+    /// The values that are set beside the text, and their names in messages.
     sets: Vec<String>,
     set_by: Vec<String>,
     /// Whether a person wrote the text. Messages show only such text.
@@ -40,7 +40,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Takes a text that the package made. `name` is what it describes.
+    /// Takes a text that the package made. `name` is its name in messages.
     pub fn made(name: String, folder: PathBuf, text: &str) -> Self {
         let bytes = text.as_bytes().to_vec();
         Self { name, folder, bytes, sets: Vec::new(), set_by: Vec::new(), is_written: false }
@@ -68,26 +68,26 @@ impl Source {
     }
 }
 
-/// Makes a model that is asked about rays alone.
+/// Makes a model for ray queries only.
 pub fn loaded_for_rays(py: Python<'_>, source: &Source) -> PyResult<Loaded> {
     source.load(py, Some(Accuracy::Exact), true)?.map_err(|report| errors::exception(py, &report))
 }
 
-/// A scene, ready to be rendered and to be asked about rays. `load`, `parse` and `scene` make one.
+/// A scene, ready for rendering and ray queries. `load`, `parse` and `scene` make one.
 #[pyclass(frozen, module = "tabray")]
 pub struct Scene {
     source: Source,
     model: Arc<Model>,
-    /// The model with exact hits, where the scene chooses others, once it is asked for.
+    /// The model with exact hits, where the scene chooses others, once it is needed.
     exact: OnceLock<Arc<Model>>,
-    /// Whether the scene has a camera; one without is asked about rays alone.
+    /// Whether the scene has a camera. One without answers ray queries only.
     #[pyo3(get)]
     has_camera: bool,
 }
 
-/// Reads the text of a scene. Its file names are relative to `folder`; `sets` are set beside it, as `--set` has them. A text
-/// that was made of dicts is not `is_written`: messages about it are told by the caller, who knows what was made of what, and
-/// those about its images have no places.
+/// Reads the text of a scene. Its file names are relative to `folder`; `sets` are set beside it, as by `--set`. A
+/// text made from dicts is not `is_written`: the caller names the parts of the dicts in messages, and messages from
+/// later reads have no places.
 #[pyfunction]
 pub fn read(
     py: Python<'_>,
@@ -108,7 +108,7 @@ pub fn read(
     scene(py, source, loaded, has_camera)
 }
 
-/// Makes a scene from the file of a mesh, to be asked about rays.
+/// Makes a scene from a mesh file, for ray queries.
 #[pyfunction]
 pub fn read_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -175,9 +175,10 @@ fn accuracy(name: &str) -> PyResult<Accuracy> {
 
 #[pymethods]
 impl Scene {
-    /// Renders the image. Width and height in pixels, the samples of each pixel and the method ("exact", "strict", "draft" or
-    /// "classic") are the scene's own by default. If only width or only height is given, the other follows. `depth`, `objects` and `normals` add
-    /// arrays of these. `progress` is called with the number of rows that are done, and of all.
+    /// Renders the image. Width and height in pixels, the samples of each pixel and the method ("exact", "strict",
+    /// "draft" or "classic") are the scene's own by default. If only width or only height is given, the other
+    /// follows. `depth`, `objects` and `normals` add arrays of these. `progress` is called with the numbers of
+    /// finished rows and of all rows.
     #[pyo3(signature = (
         *, samples=None, width=None, height=None, method=None, depth=false, objects=false, normals=false, threads=None,
         progress=None
@@ -208,11 +209,11 @@ impl Scene {
         image::render(py, &model, &wanted, &How { threads, progress })
     }
 
-    /// Says what rays hit first, each with a proof. Origins and directions are arrays of shape (n, 3), or (3,) for one that stands
-    /// for all; arrays of float64 or float32 are not copied. Directions need not be unit vectors: t counts lengths of the
-    /// direction. `t_max` is the t at which rays end, a number or one for each. `fast` proves nothing and says what
-    /// the tracer finds; `tight` narrows the bounds of t with 237 bits, in many times the time. `progress` is called with the number
-    /// of rays that are done, and of all.
+    /// Finds the first hits of rays, each with a proof. Origins and directions are arrays of shape (n, 3), or (3,)
+    /// for one that is used for all rays. Arrays of float64 or float32 are not copied. Directions need not be unit
+    /// vectors: t is in lengths of the direction. `t_max` is the t at which rays end, a number or one for each.
+    /// `fast` proves nothing and returns the tracer's hits; `tight` narrows the bounds of t with 237 bits, in many
+    /// times the time. `progress` is called with the numbers of finished rays and of all rays.
     #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, tight=false, threads=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn hits<'py>(
@@ -231,8 +232,8 @@ impl Scene {
         hits::hits(py, &model, &rays, Asked { fast, tight }, &How { threads, progress })
     }
 
-    /// Says for each ray whether anything is hit before `t_max`, as for shadows. False is proven; True is also where 237 bits do
-    /// not tell. With `fast`, nothing is proven.
+    /// Tells for each ray whether anything is hit before `t_max`, as for shadows. False is proven; True also stands
+    /// where 237 bits do not tell. With `fast`, nothing is proven.
     #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, threads=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn occluded<'py>(
@@ -262,7 +263,7 @@ impl Scene {
         proof::verify(py, &self.model, &How { threads, progress })
     }
 
-    /// The names of the objects that rays may hit, by their indices in arrays.
+    /// The names of the objects that rays may hit, in the order of the indices in arrays.
     #[getter]
     fn objects(&self) -> Vec<&str> {
         self.model.objects.iter().map(|object| object.args.name()).collect()

@@ -1,4 +1,4 @@
-//! Long work, done without the interpreter's lock, on threads of its own, until it is finished or Ctrl-C is pressed.
+//! Long work without the interpreter's lock. It runs on threads of its own until it is finished or Ctrl-C is pressed.
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -9,18 +9,18 @@ use std::time::Duration;
 use tabray_core::render::Renderer;
 use tabray_tools::threads;
 
-/// How often signals are checked, and progress is told.
+/// The time between two checks for signals and reports of progress.
 const POLL: Duration = Duration::from_millis(50);
 
-/// How work is done.
+/// Settings of long work.
 pub struct How<'py> {
     /// The number of threads; `None` for one on each core.
     pub threads: Option<usize>,
-    /// The progress callback: it is passed how much is done, and how much there is.
+    /// The progress callback, called with the finished and the whole amount of work.
     pub progress: Option<Bound<'py, PyAny>>,
 }
 
-/// What the caller and the working threads tell each other.
+/// The state that the caller and the working threads share.
 #[derive(Default)]
 pub struct Course {
     stops: AtomicBool,
@@ -28,23 +28,23 @@ pub struct Course {
 }
 
 impl Course {
-    /// Tells whether the work is to end, as its results are not wanted.
+    /// Tells whether the work must stop, as its results are not wanted.
     pub fn stops(&self) -> bool {
         self.stops.load(Ordering::Relaxed)
     }
 
-    /// Counts what is done.
+    /// Adds to the amount of finished work.
     pub fn step(&self, count: usize) {
         self.done.fetch_add(count, Ordering::Relaxed);
     }
 }
 
 impl How<'_> {
-    /// Work that takes little time, or reports no progress.
+    /// Settings of work that takes little time, or reports no progress.
     pub const PLAIN: Self = Self { threads: None, progress: None };
 
-    /// Does the work, of which there is `all`, and returns its result. The interpreter runs other threads meanwhile. A signal
-    /// ends the work, and is raised: `work` asks its [`Course`] often whether it stops.
+    /// Does the work, of the amount `all`, and returns its result. The interpreter runs other threads meanwhile. A
+    /// signal stops the work and is raised, so `work` must often ask its [`Course`] whether to stop.
     pub fn run<T: Send>(
         &self,
         py: Python<'_>,
@@ -55,7 +55,7 @@ impl How<'_> {
             return Err(pyo3::exceptions::PyValueError::new_err("`threads` must be at least 1"));
         }
         let renderer = threads::renderer_with(self.threads.unwrap_or(0));
-        // Threads of this call alone: those of the parent are not in a process that was forked.
+        // This call starts its own threads: a forked process has none of its parent's.
         let renderer = renderer.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         let (course, (send, receive)) = (Course::default(), mpsc::channel());
         let progress = self.progress.as_ref().map(|progress| progress.clone().unbind());
@@ -67,7 +67,7 @@ impl How<'_> {
                 loop {
                     match receive.recv_timeout(POLL) {
                         Ok(result) => return raised.map(|()| Some(result)),
-                        // It panicked, which the scope passes on.
+                        // The work panicked. The scope passes the panic on.
                         Err(RecvTimeoutError::Disconnected) => return Ok(None),
                         Err(RecvTimeoutError::Timeout) => {}
                     }
