@@ -1,18 +1,18 @@
-// The camera by pointer and keys: it goes around a point, aside, and nearer.
+// The camera by pointer and keys: orbit, pan and dolly.
 
 // Whether dragging moves the camera.
 let steers = false
-// The point around which it goes, and whether it was clicked: the middle of the image is another one after a pan.
+// The point of the orbit, and whether it was clicked. After a pan, the middle of the image shows another point.
 let around = null, isClicked = false
-// The camera's name, whether its image plane stays in its place, and whether it can become a camera without one.
+// The camera's name, whether its image plane is fixed, and whether it can become a camera without a fixed one.
 let cameraName = '', isWindow = false, turns = false
 
-// By how many degrees the scene turns when the pointer moves by a pixel of the screen.
+// The angle in degrees by which the scene turns for each pixel of the screen.
 const TURN = 0.3
-// How long a turn of the wheel or a key belongs to the one before, in milliseconds.
+// The time in milliseconds within which turns of the wheel or keys are one gesture.
 const TOGETHER = 400
 
-// Why the camera stays where it is.
+// The reason why the camera was not moved.
 let complaint = ''
 
 const WINDOW = '; the image plane stays, which shears what is seen from the side'
@@ -25,7 +25,7 @@ const hint = () => {
   return `drag to orbit, ${more} to pan, ${zoom} to move closer; ${click} the point to orbit around${isWindow ? WINDOW : ''}${turns ? TURNS : ''}`
 }
 
-/// The point that a pixel shows, or will show when the image that comes has come.
+/// The point that a pixel shows. If a new image is on its way, waits for it.
 const pointAt = async (at) => {
   for (let tries = 0; tries < 10; tries++) {
     const answer = await request(`point/${version}/${at[0]}/${height - 1 - at[1]}`).catch(() => null)
@@ -35,13 +35,13 @@ const pointAt = async (at) => {
   return null
 }
 
-/// Lets the camera go around the point that a pixel shows.
+/// Makes the camera orbit the point that a pixel shows.
 const turnAround = async (at) => {
   around = pointAt(at)
   isClicked = true
 }
 
-/// Begins a movement of the camera by one drag, or by turns of the wheel or keys that follow one another.
+/// Begins a movement of the camera: a drag, or turns of the wheel or keys in close succession.
 const grip = (how) => {
   complaint = ''
   return { how, point: null, from: null, wanted: null, isQueued: false, isRefused: false }
@@ -71,15 +71,15 @@ const send = async (gesture) => {
   if (gesture.how === 'pan' && !isClicked) around = null
 }
 
-/// Says why the camera stays, if it does.
+/// Shows why the camera was not moved, if so.
 const complain = async (answer) => {
   complaint = answer?.ok ? '' : answer ? (await answer.text()).trim() : 'tabray is not running'
   $('#under').textContent = hint()
   $('#fields p span').textContent = complaint
 }
 
-/// Moves the camera by this many pixels of the screen since the gesture began, and to a distance divided by a factor. Of the
-/// movements that come while the program takes in the ones before, only the last is sent.
+/// Moves the camera by this many pixels of the screen since the gesture began, and divides its distance by a factor.
+/// While the program is busy with earlier movements, only the latest one is kept.
 const steer = (gesture, [right, down], factor) => {
   const by = (scale) => [right * scale, -down * scale]
   const isPan = gesture.how === 'pan'
@@ -100,7 +100,7 @@ const push = (how, by, factor) => {
   steer(pushed.gesture, pushed.by, pushed.factor)
 }
 
-/// Moves the camera by a key, if the key is one that does.
+/// Moves the camera if the key is an arrow.
 const nudge = ({ key, shiftKey }) => {
   const step = steps[key]
   if (!step || document.activeElement !== stage) return false
@@ -108,7 +108,7 @@ const nudge = ({ key, shiftKey }) => {
   return true
 }
 
-/// Learns what the camera is, and offers one that orbits truly in place of one whose image plane stays.
+/// Fetches the camera's properties, and offers a camera that truly orbits in place of one with a fixed image plane.
 const learnCamera = async () => {
   const answer = await request('camera').catch(() => null)
   const camera = answer?.ok ? await answer.json() : null
@@ -119,7 +119,7 @@ const learnCamera = async () => {
   $('#under').textContent = hint()
 }
 
-/// Turns the camera into one that orbits truly.
+/// Turns the camera into one that truly orbits.
 const turnCamera = async () => {
   if ($('#turn').hidden) return
   await queue
@@ -139,7 +139,7 @@ const toggleSteering = () => {
   learnCamera()
   $('#under').textContent = hint()
   if (!steers) return
-  // The camera's values are those that change.
+  // Shows the camera's values, which will change.
   shown = null
   refresh()
   stage.focus()

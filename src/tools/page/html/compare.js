@@ -1,9 +1,9 @@
-// Two images compared: left of a line the one before or by other means, right of it the current one.
+// Compares two images: left of a line an earlier one or one by other means, right of it the current one.
 
 const box = $('#comparing'), beforeCanvas = $('#before'), divider = $('#line')
-// The image left of the line: its colours, its size, and the version of the scene that it must be compared with, if any.
+// The image left of the line: its colours, its size, and the version of its scene if that must be the current one.
 let before = null
-// Where the line is, in percent of the image's width.
+// The position of the line, in percent of the image's width.
 let line = 50
 // Whether the current image is to be pinned as soon as it is complete.
 let pins = false
@@ -21,12 +21,12 @@ const moveLine = (to) => {
   beforeCanvas.style.clipPath = `inset(0 ${100 - line}% 0 0)`
 }
 
-/// Whether the image left of the line is of a scene before: one by other means is then on its way.
+/// Whether the image left of the line shows an earlier scene. A new one by other means is then on its way.
 const isStale = () => before?.of && before.of !== version
 
 const fits = () => before && before.size[0] === width && before.size[1] === height
 
-/// Draws the image left of the line, if there is one of this size; other layers have none.
+/// Draws the image left of the line, if it has the current size. Other layers have none.
 const showBefore = () => {
   const isSeen = compares() && layer === 'picture' && fits()
   beforeCanvas.hidden = divider.hidden = !isSeen
@@ -36,7 +36,7 @@ const showBefore = () => {
   moveLine(line)
 }
 
-/// Tells how two images differ, in levels from 0 to 255, in the words of `tabray diff`.
+/// Describes the difference of two images, in levels from 0 to 255, in the words of `tabray diff`.
 const difference = (old, now) => {
   const count = (number, noun) => `${number} ${noun}${number === 1 ? '' : 's'}`
   let differing = 0, largest = 0, squares = 0
@@ -71,7 +71,7 @@ const compare = () => {
   root.dataset.compared = `${version} ${means()}`
 }
 
-/// Begins again: what is left of the line is another image, or that of another scene.
+/// Compares again after a change of the scene or of the image left of the line.
 const compareNext = () => {
   if (!compares()) return
   delete root.dataset.compared
@@ -81,7 +81,7 @@ const compareNext = () => {
   } else fetchOther()
 }
 
-/// Has the current scene rendered by other means.
+/// Requests an image of the current scene by other means.
 const fetchOther = async () => {
   const of = version, how = means(), size = [width, height]
   otherAsked?.abort()
@@ -127,7 +127,7 @@ $('#comparing select').addEventListener('change', () => {
   if (means() === 'pinned') pin(); else compareNext()
 })
 
-// The stage must not take a drag of the line for one of its own.
+// A drag of the line must not reach the stage.
 const lineTo = (event) => {
   const { left, width: wide } = sheet.getBoundingClientRect()
   moveLine(100 * (event.clientX - left) / wide)

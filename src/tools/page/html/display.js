@@ -1,9 +1,9 @@
-// How light is shown in the image: as the program does it, up to rounding.
+// Conversion of light to the image's bytes: like the program's, up to rounding.
 
-// By the rules of the scene: the notes' until it says otherwise.
+// The rules of the scene; the notes' until one arrives.
 let display = { rules: 'notes', exposure: 0, tone: 'clip', transfer: 'linear' }
 
-/// What the Khronos PBR neutral tone mapper makes of a colour.
+/// Returns a colour after the Khronos PBR neutral tone mapper.
 const neutral = (colour) => {
   const shoulder = 0.76, room = 1 - shoulder
   const least = Math.min(...colour), offset = least < 0.08 ? least - 6.25 * least * least : 0.04
@@ -18,14 +18,14 @@ const encode = (light) => {
   return light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055
 }
 
-/// How bright a screen shows light up to white, and the light that it shows so.
+/// The screen's brightness for light up to white, and the inverse.
 const toScreen = (light) => display.rules === 'notes' ? light : encode(light)
 const toLight = (shown) => {
   if (display.rules === 'notes' || display.transfer === 'linear') return shown
   return shown <= 0.04045 ? shown / 12.92 : ((shown + 0.055) / 1.055) ** 2.4
 }
 
-/// Returns the three bytes of a pixel, with more stops of exposure than the scene's own.
+/// Returns the three bytes of a pixel, with extra stops of exposure.
 const bytesOf = (colours, at, more = 0) => {
   const gain = 2 ** (display.exposure + more)
   const light = [0, 1, 2].map((channel) => Math.min(Math.max(gain * colours[at + channel] || 0, 0), Number.MAX_VALUE))

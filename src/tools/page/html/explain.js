@@ -15,5 +15,5 @@ const explain = async ([x, fromTop]) => {
   markLines(textIsThePicture ? lines : null)
 }
 
-/// Explains a pixel and shows the values of its object; the camera then goes around the point that is seen there.
+/// Explains a pixel, shows the values of its object, and makes the camera orbit its point.
 const look = (at) => { explain(at); fetchFields(at); turnAround(at) }

@@ -1,9 +1,9 @@
-// The values of an entity, and what is tried out.
+// The values of an entity, and values to try.
 
-/// What is tried out and not yet written, by object and attribute.
+/// The attributes with tried values that are not in the file yet, by object and attribute.
 const tried = new Set()
 
-/// The entity whose values are shown: its name and its index in the scene.
+/// The shown entity: its name and its index in the scene.
 let shown = null
 
 const key = ({ kind, name }) => `${kind} ${name}`
@@ -21,7 +21,7 @@ const fetchFields = async ([x, fromTop]) => {
 /// The entities that have values.
 const list = (of) => request(`entities/${of}`).then((answer) => answer.ok ? answer.json() : []).catch(() => [])
 
-/// Shows the values of an entity again, as they are in the scene that came last, or those of the camera.
+/// Shows the current values of the entity again, or those of the camera.
 const refresh = async () => {
   const of = version, all = await list(of)
   const wanted = all.find((one) => shown && key(one) === key(shown)) ?? shown ?? all[0]
@@ -31,7 +31,7 @@ const refresh = async () => {
 }
 
 const open = (entity, all) => {
-  // While it is being changed, its fields stay as they are.
+  // A field keeps its values while the user changes it.
   if ($('#fields select').value === key(entity) && $('#fields form').contains(document.activeElement)) return
   shown = entity
   $('#fields').hidden = false
@@ -40,7 +40,7 @@ const open = (entity, all) => {
   if (!all.some((one) => key(one) === key(entity))) all.push(entity)
   select.replaceChildren(...all.map((one) => new Option(visible(key(one)), key(one), false, key(one) === key(entity))))
   showFields(entity)
-  // There is less room for the text now.
+  // There is now less room for the text.
   reveal(marked)
 }
 
@@ -93,8 +93,8 @@ const showFields = ({ name, attributes }) => {
   }))
 }
 
-/// Makes the swatch of a colour, which picks another. A colour brighter than white is shown, and stays, as bright as its
-/// brightest channel.
+/// Makes the swatch of a colour, which picks another one. A colour brighter than white is shown with its brightest
+/// channel at 1, and keeps its brightness.
 const colourPicker = (of, about, values, fixed, pick) => {
   const label = document.createElement('label'), box = document.createElement('input')
   label.textContent = of
@@ -114,7 +114,7 @@ const colourPicker = (of, about, values, fixed, pick) => {
   return { row: [label, box], show }
 }
 
-// Of the values that come while the program takes in the ones before, only the last are sent.
+// While the program is busy with earlier values, only the latest ones are kept.
 let sending = false, wanted = null
 const tryOut = async (name, attribute, values) => {
   tried.add(`${name} ${attribute}`)

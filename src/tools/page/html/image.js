@@ -1,6 +1,6 @@
-// The image, and the layers of it.
+// The image and its layers.
 
-// The bytes of the picture's pixels, where the program sends them beside the colours.
+// The bytes of the picture's pixels, if the program sends them with the colours.
 let levels = null
 
 const resize = ([wide, high]) => {
@@ -12,7 +12,7 @@ const resize = ([wide, high]) => {
   fit()
 }
 
-/// Takes in an area of the picture, each block of it in one colour, and as bytes if they are there.
+/// Stores an area of the picture: one colour for each block, with its bytes if there are any.
 const part = (left, top, wide, high, block, isFinal, given, bytes) => {
   const across = Math.ceil(wide / block)
   if (bytes) levels ??= new Uint8Array(colours.length)
@@ -35,7 +35,7 @@ const part = (left, top, wide, high, block, isFinal, given, bytes) => {
   if (layer === 'picture') expose(left, top, wide, high)
 }
 
-/// How long the image still takes, once that can be told.
+/// Returns the remaining time as text; empty until it can be estimated.
 const timeLeft = () => {
   const took = (performance.now() - began) / 1000, part = ready / (width * height)
   if (!ready || took < 1) return ''
@@ -60,7 +60,7 @@ const fetchLayer = async () => {
   waits = true
   tell()
   const answer = await ask(`layer/${of}/${name}`, 'arrayBuffer')
-  // One of a scene that changed meanwhile is asked for again when the new one comes.
+  // If the scene has changed meanwhile, the new one requests its layer again.
   if (!answer || of !== version || name !== layer) return
   const bytes = new Uint8Array(answer)
   const image = new ImageData(width, height)

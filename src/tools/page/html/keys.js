@@ -12,7 +12,7 @@ $('#turn').addEventListener('click', turnCamera)
 $('#told button').addEventListener('click', close)
 $('#fields h2 button').addEventListener('click', close)
 
-/// Zooms in or out or, in the mode, takes the camera nearer or away.
+/// Zooms in or out or, when dragging moves the camera, moves it closer or away.
 const larger = (way) => {
   if (steers) push('dolly', [0, 0], 1.1 ** way)
   else zoomAt(stage.clientWidth / 2, stage.clientHeight / 2, 2 ** way)
@@ -27,7 +27,7 @@ Object.assign(bindings, {
 document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return
   if (event.target.matches?.('textarea')) return
-  // Sliders and choices take no letters and digits.
+  // Sliders and choices need no letters or digits.
   if (event.target.matches?.('input:not([type=range], [type=radio]), select') && event.key !== 'Escape') return
   const { key } = event
   if (layers[key - 1]) choose(layers[key - 1])

@@ -1,6 +1,6 @@
 // The pointer on the image: a click explains a pixel, and dragging moves the sheet or the camera.
 
-// Where the pointers that touch the image are: two fingers are two of them.
+// The positions of the pointers on the image; each finger is a pointer.
 const fingers = new Map()
 let drag = null
 
@@ -10,7 +10,7 @@ const spread = () => {
   return other ? Math.hypot(one[0] - other[0], one[1] - other[1]) : 1
 }
 
-/// Begins to drag, and begins again when a finger comes or goes.
+/// Begins a drag, again whenever a finger comes or goes.
 const grasp = (event) => {
   const pans = event.shiftKey || event.button === 2 || fingers.size > 1
   drag = fingers.size

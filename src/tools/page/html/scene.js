@@ -1,9 +1,9 @@
-// The scene that is shown: what comes of it, and what is said about it.
+// The shown scene: events and messages.
 
 // The warnings about the scene.
 let warnings = ''
 
-/// A scene comes; its picture follows in parts.
+/// A scene arrives. Its picture follows in parts.
 const begin = (scene) => {
   version = scene.version
   display = scene.display
@@ -31,7 +31,7 @@ const finish = ({ version: of, seconds }) => {
   requestAnimationFrame(() => { root.dataset.shown = version; root.dataset.shownAt = Date.now() })
 }
 
-/// Something is to be said of the complete picture.
+/// There is a remark on the complete picture.
 const remark = ({ version: of, words }) => {
   if (of === version) report([warnings, words].filter(Boolean).join('\n'), true)
 }

@@ -1,21 +1,21 @@
 'use strict'
 const $ = (selector) => document.querySelector(selector)
-// Characters that are not seen, as the program shows them in its messages.
+// Shows invisible characters as the program's messages do.
 const visible = (text) => text.replace(/(?!\t)[\p{Cc}\p{Default_Ignorable_Code_Point}\p{Zl}\p{Zp}\p{Bidi_Control}]/gu,
   (letter) => `\\u{${letter.codePointAt(0).toString(16)}}`)
 const root = document.documentElement, stage = $('#stage'), sheet = $('#sheet'), canvas = $('canvas')
 const paper = canvas.getContext('2d')
 
-// The picture: its colours, as they are traced, and how many of its pixels are final.
+// The picture: its traced colours, and the number of its final pixels.
 let version = 0, width = 0, height = 0, colours = new Float32Array(0), ready = 0
-// When the first pixels became final.
+// The time when the first pixels became final.
 let began = 0
-// Whether the text is the one that the picture was made from.
+// Whether the picture was made from the text.
 let textIsThePicture = false
 let layer = 'picture', stops = 0
 
 let words = ''
-// Whether another picture than the one chosen is on the canvas.
+// Whether the canvas shows another layer than the chosen one.
 let waits = false
 
 const tell = () => { $('#state').textContent = waits ? `loading ${layer}` : words }
@@ -23,16 +23,16 @@ const state = (name, said) => {
   root.dataset.state = name
   words = said
   tell()
-  // Progress is not read out; errors have a place of their own.
+  // Screen readers do not announce progress; errors have their own element.
   if (['done', 'lost'].includes(name)) announce(said)
 }
 
-/// Tells readers of the screen.
+/// Announces text to screen readers.
 const announce = (said) => { $('#said').textContent = said }
 
-// What else is done when a scene comes, when its picture is complete, and when the picture is drawn anew.
+// Further actions when a scene arrives, when its picture is complete, and when the picture is drawn again.
 const on = { scene: [], done: [], drawn: [] }
 const happens = (what) => { for (const act of on[what]) act() }
 
-// What keys do.
+// The actions of keys.
 const bindings = {}

@@ -1,4 +1,4 @@
-// Zoom, and the pixel that is explained.
+// Zoom, and the explained pixel.
 
 let mark = null
 let zoom = 1, offset = [0, 0], isFit = true
@@ -8,7 +8,7 @@ const place = () => {
   sheet.style.transform = `translate(${offset[0]}px, ${offset[1]}px) scale(${zoom})`
   sheet.style.setProperty('--screen', `${1 / zoom}px`)
   if (!mark) return
-  // The mark is as thin at any zoom.
+  // The mark has the same width at any zoom.
   const [left, top] = mark.map((at, side) => `${offset[side] + zoom * at}px`)
   Object.assign($('#mark').style, { left, top, width: `${zoom}px`, height: `${zoom}px` })
 }
@@ -18,7 +18,7 @@ const fit = () => {
   if (!width || !clientWidth) return
   canvas.style.imageRendering = ''
   const whole = Math.min((clientWidth - 32) / width, (clientHeight - 32) / height)
-  // Pixels of one size, where there is room for them, unless they are smoothed.
+  // If pixels are enlarged and not smoothed, all have the same size.
   zoom = whole > 1 && getComputedStyle(canvas).imageRendering === 'pixelated' ? Math.floor(whole) : whole
   offset = [(clientWidth - zoom * width) / 2, (clientHeight - zoom * height) / 2].map(Math.round)
   isFit = true
