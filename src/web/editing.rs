@@ -1,4 +1,5 @@
-//! What an editor asks about a text. Positions are numbers of UTF-16 units from its beginning, as a text area counts them.
+//! An editor's queries about a text. Positions are numbers of UTF-16 units from its beginning, as a text area counts
+//! them.
 
 use crate::text::{NAME, view, without_files};
 use serde_json::{Value, json};
@@ -14,7 +15,7 @@ fn units(text: &str, at: usize) -> usize {
     text.get(..at).map_or(0, |before| before.chars().map(char::len_utf16).sum())
 }
 
-/// Returns the byte before which there are this many UTF-16 units; the end of the text, where it has fewer.
+/// Returns the byte after this many UTF-16 units, or the end of a shorter text.
 fn byte(text: &str, units: usize) -> usize {
     let mut left = units;
     for (at, letter) in text.char_indices() {
@@ -28,13 +29,13 @@ fn place(text: &str, range: &Range<usize>) -> [usize; 2] {
     [range.start, range.end].map(|at| units(text, at))
 }
 
-/// Reads a text, with no other file.
+/// Reads a text without other files.
 fn read(registry: &Registry, text: &str) -> Group {
     let view = Arc::new(view(registry, text));
     vec![(PathBuf::from(NAME), view)]
 }
 
-/// Returns the faults of a scene, each with its place and what would be right.
+/// Returns the faults of a scene, each with its place and its correction.
 pub fn diagnose(registry: &Registry, text: &str) -> Vec<Value> {
     let whole = Text::new(text);
     let told = |fault: editor::Diagnosis| {
@@ -52,7 +53,7 @@ pub fn diagnose(registry: &Registry, text: &str) -> Vec<Value> {
     editor::diagnose(registry, Path::new(NAME), text, &[]).into_iter().map(told).collect()
 }
 
-/// Returns what can be written at a position.
+/// Returns the completions at a position.
 pub fn completions(registry: &Registry, text: &str, at: usize) -> Vec<Value> {
     let group = read(registry, text);
     let told = |proposal: editor::Completion| {
@@ -79,7 +80,7 @@ pub fn completions(registry: &Registry, text: &str, at: usize) -> Vec<Value> {
     editor::completions(registry, &group, byte(text, at)).into_iter().map(told).collect()
 }
 
-/// Returns what a word means, in Markdown, and its place.
+/// Returns the meaning of a word, in Markdown, and its place.
 pub fn hover(registry: &Registry, text: &str, at: usize) -> Option<Value> {
     let found = editor::hover(&read(registry, text), byte(text, at))?;
     Some(json!({ "text": found.text, "place": place(text, &found.place) }))
@@ -94,7 +95,7 @@ pub fn signature(registry: &Registry, text: &str, at: usize) -> Option<Value> {
     Some(json!({ "label": found.label, "values": values, "active": found.active }))
 }
 
-/// Returns the text in its form.
+/// Returns the formatted text.
 ///
 /// # Errors
 /// Returns why the text cannot be formatted.

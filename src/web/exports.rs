@@ -1,7 +1,7 @@
-//! The session as plain functions over memory: what a web worker calls.
+//! The session as plain functions over memory, which a web worker calls.
 //!
-//! A request is written to memory that [`room`] gives; [`answer`] takes it, and returns the place of its answer: the status
-//! and the length as numbers of 32 bits, and the bytes. [`free`] gives it back.
+//! The caller writes a request to memory from [`room`]. [`answer`] takes the request and returns the address of the
+//! answer: the status and the length as numbers of 32 bits, then the bytes. [`free`] takes the answer back.
 
 #![allow(unsafe_code, reason = "memory is shared with the caller, who is no Rust")]
 
@@ -9,7 +9,7 @@ use crate::session::Session;
 use std::cell::RefCell;
 
 unsafe extern "C" {
-    // Entity types register themselves in constructors, which nothing else calls here.
+    // Entity types register themselves in constructors. Nothing else calls them here.
     fn __wasm_call_ctors();
 }
 
@@ -17,10 +17,10 @@ thread_local! {
     static SESSION: RefCell<Option<Session>> = const { RefCell::new(None) };
 }
 
-/// The length of what stands before the bytes of an answer.
+/// The length of the head of an answer, in bytes.
 const HEAD: usize = 8;
 
-/// Registers the entity types. To be called once, before all else.
+/// Registers the entity types. The caller calls it once, before all else.
 #[unsafe(no_mangle)]
 pub extern "C" fn start() {
     // SAFETY: it takes nothing, and is called once.
@@ -37,17 +37,17 @@ pub extern "C" fn room(length: usize) -> *mut u8 {
 /// Takes memory back.
 ///
 /// # Safety
-/// It comes from [`room`] or from [`answer`], with this length.
+/// The memory comes from [`room`] or from [`answer`], with this length.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn free(at: *mut u8, length: usize) {
     // SAFETY: the caller's promise.
     drop(unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(at, length)) });
 }
 
-/// Answers a request, of which the first bytes are the path and the rest the body. The request is taken back.
+/// Answers a request, and takes its memory back. The first bytes are the path, and the rest is the body.
 ///
 /// # Safety
-/// It comes from [`room`], with this length, and is written.
+/// The request comes from [`room`], with this length, and is written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn answer(at: *mut u8, path: usize, length: usize) -> *mut u8 {
     // SAFETY: the caller's promise.

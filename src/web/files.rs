@@ -1,4 +1,4 @@
-//! Files of what a page shows: the picture, and meshes of its objects.
+//! Files of a scene: the picture, and meshes of its objects.
 
 use crate::painting::{Painting, Whole};
 use std::borrow::Cow;
@@ -9,7 +9,7 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{list, short};
 use tabray_tools::surface_mesh::{self, Body, NoBody, NoMesh, mesh};
 
-/// The part of an object's size that is the error of its mesh: near nodes, cells are halved until they are that small, and a
+/// The error of an object's mesh, as a fraction of the object's size. Cells near nodes are halved down to it, and a
 /// page has little memory.
 const FRACTION: f64 = 1.0 / 50.0;
 
@@ -25,7 +25,7 @@ pub fn png(painting: &Painting) -> Result<Vec<u8>, String> {
     written.map_err(|error| error.to_string()).map(|()| out)
 }
 
-/// Returns the picture as OpenEXR: colours before they are clamped.
+/// Returns the picture as OpenEXR, with colours that are not clamped.
 ///
 /// # Errors
 /// Returns why the file cannot be made.
@@ -36,7 +36,7 @@ pub fn exr(painting: &Painting) -> Result<Vec<u8>, String> {
     written.map_err(|error| error.to_string()).map(|()| out)
 }
 
-/// Returns the names of a scene's objects, the first of them.
+/// Returns the names of a scene's first objects.
 pub fn names(model: &Model) -> Vec<&str> {
     let mut names: Vec<_> = model.objects.iter().take(200).map(|object| object.args.name()).collect();
     names.dedup();

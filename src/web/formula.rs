@@ -9,7 +9,7 @@ use tabray_lang::editor::{self, View};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// A formula, and the text in which it is to stand.
+/// A formula, and the text that will contain it.
 #[derive(Deserialize)]
 struct FormulaRequest {
     text: String,
@@ -31,14 +31,14 @@ fn place(view: &View) -> Option<Range<usize>> {
     found
 }
 
-/// Returns the formula of the first `implicit` of a text; null where there is none.
+/// Returns the formula of the first `implicit` of a text; null without one.
 pub fn of(registry: &Registry, text: &str) -> Value {
     let view = read(registry, text);
     place(&view).map_or(Value::Null, |place| view.slice(place).into())
 }
 
-/// Replaces the formula of a text's first `implicit`; a text without an `implicit` is replaced as a whole. Names that
-/// the text does not know become numbers in the text, with the value 1.
+/// Replaces the formula of a text's first `implicit`. A text without an `implicit` is replaced as a whole. In the
+/// notes' syntax, names that the text does not define become numbers in it, with the value 1.
 ///
 /// # Errors
 /// Returns why the formula cannot stand there.
@@ -46,7 +46,7 @@ pub fn changed(registry: &Registry, body: &str) -> Result<String, String> {
     let FormulaRequest { text, formula } =
         serde_json::from_str(body).map_err(|_| "this is not a formula".to_owned())?;
     let formula = formula.trim();
-    // `x^2 + y^2 = 1` is what people write.
+    // People write `x^2 + y^2 = 1`.
     let formula = match formula.split_once('=') {
         Some((left, right)) if right.trim() == "0" => left.trim().to_owned(),
         Some((left, right)) => format!("{} - ({})", left.trim(), right.trim()),
@@ -63,7 +63,7 @@ pub fn changed(registry: &Registry, body: &str) -> Result<String, String> {
     Ok(with_unknown(registry, text))
 }
 
-/// Adds a `let` for each name of the first formula that the text does not define.
+/// Adds a `let` to a text in the notes' syntax for each name of the first formula that the text does not define.
 fn with_unknown(registry: &Registry, text: String) -> String {
     let view = read(registry, &text);
     let Some(place) = place(&view) else { return text };
@@ -75,7 +75,7 @@ fn with_unknown(registry: &Registry, text: String) -> String {
         Syntax::Notes => unknown.iter().map(|name| format!("let {name} 1\n")).collect(),
         Syntax::Toml => return text,
     };
-    // Comments at the beginning stay there.
+    // Comments at the beginning stay first.
     let lines = text.split_inclusive('\n').take_while(|line| line.starts_with('#') || line.trim().is_empty());
     let at = lines.map(str::len).sum::<usize>();
     view.text.edited(at..at, &lets).as_str().to_owned()

@@ -1,8 +1,8 @@
 //! Scenes in a browser, without a server.
 //!
-//! A [`Session`] holds one scene and answers requests by path and body, as the server of `tabray watch` does: the picture in
-//! steps, proofs of pixels, the plan, explained pixels, files, and what an editor asks about a text that is being written.
-//! As WebAssembly, `exports` has it as plain functions over memory; a web worker calls them.
+//! A [`Session`] holds one scene and answers requests by path and body, as the server of `tabray watch` does: the
+//! picture in steps, proofs of pixels, the plan, explained pixels, files, and an editor's queries about a text. In
+//! WebAssembly, `exports` offers it as plain functions over memory, which a web worker calls.
 //!
 //! ```
 //! use tabray_web::Session;

@@ -10,7 +10,7 @@ use tabray_lang::reader;
 use tabray_tools::diagnosis;
 use tabray_tools::page::display::singles;
 
-/// A picture: what is left of it, and what is there.
+/// A picture: its remaining steps, and its pixels so far.
 #[derive(Default)]
 pub struct Painting {
     steps: Option<Steps>,
@@ -42,10 +42,10 @@ impl Painting {
         Self { steps, size, bytes: vec![0; numbers], colours: vec![0.0; numbers], levels: Levels::default() }
     }
 
-    /// Renders the next areas. Of each there are seven numbers of 32 bits, little-endian: its left and top, width and height,
-    /// the side of a block, 1 if it is final and 0 if not, and the number of blocks; then, for each block, red, green and blue
-    /// in single precision, and then as bytes, of which there are as many as make a multiple of four. Nothing says that the
-    /// picture is complete.
+    /// Renders the next areas, up to `count`. An area starts with seven numbers of 32 bits, little-endian: left, top,
+    /// width, height, the side of a block, 1 if the area is final and 0 if not, and the number of blocks. Red, green
+    /// and blue of each block follow in single precision, and then as bytes, which are padded to a multiple of four.
+    /// The result is empty when the picture is complete.
     pub fn next(&mut self, model: &Model, count: usize) -> Vec<u8> {
         let mut out = Vec::new();
         let Some(mut steps) = self.steps.take() else { return out };
@@ -60,7 +60,7 @@ impl Painting {
         out
     }
 
-    /// Takes in an area, and writes it for the page.
+    /// Stores an area, and writes it for the page.
     fn take(&mut self, model: &Model, area: &Area, colours: &[Rgb], out: &mut Vec<u8>) {
         let Area { corner: [left, top], size: [width, height], block, is_final } = *area;
         for number in [left, top, width, height, block, usize::from(is_final), colours.len()] {
@@ -97,7 +97,7 @@ impl Painting {
             .ok_or_else(|| "the picture is not complete yet: wait for it".to_owned())
     }
 
-    /// Says why a complete picture is black, burnt or empty, if it is.
+    /// Returns why a complete picture is black, burnt or empty, if it is.
     pub fn told(&self, model: &Model) -> Value {
         let [width, height] = self.size;
         let remark = diagnosis::remark(&Scene::plan(model), [&(0..width), &(0..height)], &self.levels);

@@ -1,18 +1,19 @@
-//! What is proven of a picture's pixels, some of them at a time.
+//! Proofs of a picture's pixels, some at a time.
 
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_tools::verify::{self, Verdict};
 
-/// How many pixels are proven.
+/// The progress of the proof of a picture.
 #[derive(Default)]
 pub struct Proving {
     next: usize,
 }
 
 impl Proving {
-    /// Proves the next pixels, in rows from the top: a byte for each, 1 where what the tracer finds is proven, 2 where several
-    /// objects tie, 3 where a shape has no equation, and 4 where the tracer is wrong. Nothing says that there are no more.
+    /// Proves the next pixels, in rows from the top. Returns a byte for each: 1 where the tracer's hit is proven, 2
+    /// where several objects tie, 3 where a shape has no equation, and 4 where the tracer is wrong. The result is
+    /// empty when all pixels are done.
     pub fn next(&mut self, model: &Model, count: usize) -> Vec<u8> {
         let plan = Plan::new(model);
         let [width, height] = plan.camera.pixels;

@@ -1,4 +1,4 @@
-//! A scene as a page has it: a text alone, without files around it.
+//! A scene of a page: a text without files around it.
 
 use crate::text::{NAME, view, without_files};
 use serde::{Deserialize, Serialize};
@@ -20,12 +20,12 @@ use tabray_tools::page::{Shown, lines, trial_values};
 /// The maximum number of pixels of a picture.
 const MAX_PIXELS: usize = 1 << 22;
 
-/// The limit on the memory of a scene, in bytes: a page that runs out of memory is gone.
+/// The maximum memory of a scene, in bytes. A page that runs out of memory is lost.
 const MEMORY: u64 = 1 << 29;
 
 /// A valid scene.
 pub struct Scene {
-    /// What the page calls it: the next one has another version.
+    /// The page's name of the scene. The next one has another version.
     pub version: String,
     pub text: String,
     pub model: Model,
@@ -34,7 +34,7 @@ pub struct Scene {
     lacking: Vec<String>,
 }
 
-/// A scene, as the page hears of it.
+/// The description of a scene for the page.
 #[derive(Serialize)]
 pub struct Told {
     display: Display,
@@ -44,18 +44,18 @@ pub struct Told {
     lacking: Vec<String>,
 }
 
-/// Why there is no scene.
+/// The reason why there is no scene.
 #[derive(Serialize)]
 pub struct Unread {
     /// The marked lines, from 1.
     lines: Vec<usize>,
-    /// The errors, as people read them.
+    /// The errors, as text for people.
     report: String,
     /// The files that the scene names and the page does not have.
     lacking: Vec<String>,
 }
 
-/// Values to be written into the text.
+/// Values to write into the text.
 #[derive(Deserialize)]
 struct Try {
     name: String,
@@ -92,14 +92,14 @@ impl Scene {
         })
     }
 
-    /// Returns what the page hears of the scene.
+    /// Returns the description of the scene for the page.
     pub fn told(&self) -> Told {
         let camera = &self.model.camera.value;
         let (warnings, lacking) = (self.warnings.clone(), self.lacking.clone());
         Told { display: Display::of(camera), size: camera.pixels, warnings, lacking }
     }
 
-    /// Returns what a page asks about.
+    /// Returns the scene for queries of a page.
     pub fn shown(&self) -> Shown<'_> {
         Shown { model: &self.model, name: NAME, text: &self.text, sets: &[] }
     }
@@ -124,7 +124,7 @@ impl Scene {
         Ok(text)
     }
 
-    /// Tells whether the text gives an attribute these numbers already.
+    /// Tells whether the text already gives an attribute these numbers.
     fn says(&self, registry: &Registry, name: &str, attribute: &str, numbers: &[f64]) -> bool {
         let view = self.shown().view(registry);
         let given = trial_values::given(&view, name, attribute);
@@ -147,7 +147,7 @@ impl Scene {
     /// Returns the text with other values of an attribute, or with another number of a `let`.
     ///
     /// # Errors
-    /// Returns why the text stays as it is.
+    /// Returns why the values cannot be written.
     pub fn tried(&self, registry: &Registry, body: &str) -> Result<String, String> {
         let wanted: Option<Try> = serde_json::from_str(body).ok();
         let are_numbers = |values: &[String]| values.iter().all(|value| value.parse::<f64>().is_ok());
@@ -170,13 +170,13 @@ impl Unread {
     }
 }
 
-/// Returns the files that a scene names and that are not held.
+/// Returns the files that a scene names but the page does not have.
 fn lacking(report: &Report) -> Vec<String> {
     let files = report.files().iter().filter(|file| held::place(file).is_none());
     files.map(|file| file.to_string_lossy().into_owned()).collect()
 }
 
-/// Returns a warning for each held file that stands for several that a scene names.
+/// Returns a warning for each held file that is used for several files of a scene.
 fn shared(report: &Report) -> String {
     let mut named = BTreeMap::<_, BTreeSet<_>>::new();
     for file in report.files() {

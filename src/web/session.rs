@@ -1,4 +1,4 @@
-//! A scene and its picture, and what a page asks about them.
+//! A scene and its picture, and a page's requests about them.
 
 use crate::painting::Painting;
 use crate::proving::Proving;
@@ -22,10 +22,10 @@ use tabray_tools::probe;
 
 /// The answer to a request, with a status as in HTTP.
 pub struct Answer {
-    /// 200, or 404 for what is not there, 409 for what cannot be done, 410 for a scene that has been replaced, and 422 for one
+    /// 200; 404 for something unknown, 409 for something impossible, 410 for a replaced scene, and 422 for a scene
     /// with errors.
     pub status: u16,
-    /// Text, JSON or bytes: what the request is about.
+    /// The text, JSON or bytes that were requested.
     pub bytes: Vec<u8>,
 }
 
@@ -38,12 +38,12 @@ impl Answer {
         Self::new(200, text::json(value))
     }
 
-    /// Returns what is there, or why it is not.
+    /// Returns the bytes, or the reason why there are none.
     fn of(result: Result<Vec<u8>, String>) -> Self {
         result.map_or_else(|reason| Self::new(409, reason), |bytes| Self::new(200, bytes))
     }
 
-    /// Returns a text that was changed, or why it was not.
+    /// Returns a changed text, or the reason why it was not changed.
     fn changed(result: Result<String, String>) -> Self {
         Self::of(result.map(|text| text::json(&json!({ "text": text })).into_bytes()))
     }
@@ -53,7 +53,7 @@ impl Answer {
     }
 }
 
-/// One scene, which the next one replaces.
+/// One scene, until the next one replaces it.
 pub struct Session {
     registry: &'static Registry,
     scene: Option<Scene>,
@@ -68,17 +68,17 @@ impl Default for Session {
 }
 
 impl Session {
-    /// Begins without a scene.
+    /// Begins a session without a scene.
     ///
     /// # Panics
-    /// If entity types contradict each other, of which the tests of the program tell.
+    /// If entity types contradict each other, which the program's tests exclude.
     pub fn new() -> Self {
         tabray_plugins::link();
         let registry = Registry::get().expect("entity types that do not contradict each other");
         Self { registry, scene: None, painting: Painting::default(), proving: Proving::default() }
     }
 
-    /// Answers a request: its path, whose parts are separated by `/`, and its body.
+    /// Answers a request with a path, whose parts are separated by `/`, and a body.
     pub fn answer(&mut self, path: &str, body: &[u8]) -> Answer {
         let text = str::from_utf8(body).unwrap_or_default();
         let parts: Vec<&str> = path.split('/').collect();
@@ -113,7 +113,7 @@ impl Session {
         }
     }
 
-    /// Reads a scene, which replaces the one before; where it has errors, that one stays.
+    /// Reads a scene, which replaces the one before. If it has errors, the one before stays.
     fn read(&mut self, version: &str, text: &str) -> Answer {
         match Scene::read(self.registry, version, text) {
             Ok(scene) => {
@@ -127,7 +127,7 @@ impl Session {
         }
     }
 
-    /// Answers a request about the scene of a version.
+    /// Answers a request about the scene with a version.
     fn about(&mut self, what: &str, version: &str, rest: &[&str], body: &str) -> Answer {
         let Some(scene) = self.scene.as_ref().filter(|scene| scene.version == version) else {
             return Answer::new(410, "this picture has been replaced");
@@ -183,7 +183,7 @@ impl Session {
 /// The maximum length of a pixel's explanation, in bytes.
 const MAX_EXPLANATION: usize = 1 << 20;
 
-/// Takes the beginning of an explanation.
+/// The first bytes of an explanation.
 struct Beginning(Vec<u8>);
 
 impl io::Write for Beginning {
@@ -211,7 +211,7 @@ fn probed(scene: &Scene, [x, y]: [usize; 2]) -> Answer {
     Answer::json(&explained)
 }
 
-/// Renders an image beside the main one: red, green and blue of each pixel.
+/// Renders an auxiliary image: red, green and blue of each pixel.
 fn layer(plan: &Plan, name: &str) -> Answer {
     // The error needs a reference image, which is not available here.
     let Some(aov) = Aov::of_name(name).filter(|aov| *aov != Aov::Error) else { return Answer::missing() };

@@ -1,22 +1,22 @@
-//! Surfaces that have names, as scenes to begin with.
+//! Named surfaces, as scenes to start from.
 
 use serde::Serialize;
 
 /// A surface, in a table.
 #[derive(Serialize)]
 pub struct Surface {
-    /// What addresses call it.
+    /// The name in addresses.
     name: &'static str,
-    /// What people call it.
+    /// The name for people.
     title: &'static str,
     /// A few words about it.
     about: &'static str,
     #[serde(skip)]
     formula: &'static str,
-    /// The numbers and functions that the formula names.
+    /// The definitions of the numbers and functions in the formula.
     #[serde(skip)]
     lets: &'static [&'static str],
-    /// Half of the side of the box, or the radius of the ball, that shows it.
+    /// The radius of the ball that clips the surface.
     #[serde(skip)]
     size: f64,
 }
@@ -27,7 +27,7 @@ macro_rules! surfaces {
     };
 }
 
-/// All of them, the first one to begin with.
+/// All surfaces. The first one is shown first.
 const SURFACES: &[Surface] = surfaces! {
     "barth-6" "Barth's sextic" 1.9
         "(1 + 2*P)*(x^2 + y^2 + z^2 - w)^2 - 4*(P^2*x^2 - y^2)*(P^2*y^2 - z^2)*(P^2*z^2 - x^2)"
@@ -148,14 +148,14 @@ pub fn all() -> &'static [Surface] {
     SURFACES
 }
 
-/// Returns the scene of a surface.
+/// Returns the scene of the surface of this name.
 pub fn scene(name: &str) -> Option<String> {
     let surface = SURFACES.iter().find(|surface| surface.name == name)?;
     let title = format!("{}: {}", surface.title, surface.about);
     Some(of_formula(&title, surface.formula, surface.size, surface.lets))
 }
 
-/// Returns the scene of a formula, in a ball of this radius.
+/// Returns the scene of a formula, clipped by a ball of radius `size`.
 pub fn of_formula(title: &str, formula: &str, size: f64, lets: &[&str]) -> String {
     let [x, y, z] = [2.5, 1.7, 3.4].map(|side| rounded(side * size));
     let lets: String = lets.iter().map(|given| format!("{given}\n")).collect();

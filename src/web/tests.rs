@@ -1,4 +1,4 @@
-//! The session as a page asks it.
+//! Tests of the session with the requests of a page.
 
 use crate::Session;
 use rand_pcg::Pcg64Mcg;
@@ -23,7 +23,7 @@ fn asked(session: &mut Session, path: &str, body: &str) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|_| Value::from(text))
 }
 
-/// Renders all of the scene, so many areas at a time, and returns the picture.
+/// Renders the scene, `count` areas at a time, and returns the picture.
 fn painted(session: &mut Session, count: usize) -> Vec<u8> {
     while !session.answer(&format!("paint/1/{count}"), b"").bytes.is_empty() {}
     session.answer("bytes/1", b"").bytes

@@ -3,10 +3,10 @@
 use tabray_lang::editor::{self, Text, View};
 use tabray_lang::registry::Registry;
 
-/// What messages call the scene.
+/// The name of the scene in messages.
 pub const NAME: &str = "scene";
 
-/// Replaces what the system says about a file by what helps here: a page has the files that it was given.
+/// Replaces the system's reason why a file cannot be read by advice: a page has only the files that it was given.
 pub fn without_files(message: &str) -> String {
     message.replace(
         "operation not supported on this platform",

@@ -1,8 +1,8 @@
 //! Makes the page for browsers in `target/web`: `cargo run -p tabray-web-build`.
 //!
-//! A folder to be served, which keeps itself for use without a network, and `tabray.html`, one file that works from
-//! anywhere. The module is compiled by the cargo and the rustc that compiled this program, for wasm32-unknown-unknown; nothing
-//! is downloaded but crates.
+//! The result is a folder to be served, which keeps itself for use without a network, and `tabray.html`, a single
+//! file that works from anywhere. The module is compiled for wasm32-unknown-unknown by the cargo and the rustc that
+//! compiled this program. Only crates are downloaded.
 
 #[path = "../../tools/page/html.rs"]
 mod html;
@@ -23,7 +23,7 @@ use std::process::{Command, ExitCode, Stdio};
 /// The target of the module.
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The scripts of this page; those of all pages are around them.
+/// The scripts of this page. Those of all pages are around them.
 const SCRIPTS: &str = concat!(
     include_str!("../page/editor.js"),
     include_str!("../page/proof.js"),
@@ -47,7 +47,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Makes the page, and says what there is.
+/// Makes the page, and returns a list of its files.
 fn made() -> Result<String, Box<dyn Error>> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| sources.join("../target"), PathBuf::from);
@@ -81,7 +81,7 @@ fn made() -> Result<String, Box<dyn Error>> {
     let mut said = String::new();
     let mut downloaded = [0; 2];
     for (name, bytes) in files {
-        // Beside, and then renamed: a page that is being served is never half.
+        // A file is written under another name and then renamed: a served page is never incomplete.
         let (path, beside) = (folder.join(name), folder.join(format!(".{name}.new")));
         fs::write(&beside, bytes)?;
         fs::rename(&beside, &path)?;
@@ -95,7 +95,7 @@ fn made() -> Result<String, Box<dyn Error>> {
     Ok(said)
 }
 
-/// Puts the page together, with more in its head and at its end.
+/// Assembles the page, with additions to its head and its end.
 fn page(head: &str, end: &str) -> String {
     let own = include_str!("../page/own.html").replacen('\n', &format!("\n{head}"), 1);
     let worker = concat!(
@@ -115,7 +115,7 @@ fn bytes_of(count: usize) -> String {
     format!("{:.2} MB", count as f64 / 1e6)
 }
 
-/// Tells compressed sizes; that by Brotli where there is one.
+/// Describes compressed sizes. Brotli's is left out if it is 0.
 fn compressed([gzip, brotli]: [usize; 2]) -> String {
     let more = if brotli > 0 { format!(", {} by Brotli", bytes_of(brotli)) } else { String::new() };
     format!(", {} by gzip{more}", bytes_of(gzip))
@@ -127,7 +127,7 @@ fn gzipped(bytes: &[u8]) -> io::Result<Vec<u8>> {
     encoder.finish()
 }
 
-/// Returns the size by Brotli, if the program of that name is there.
+/// Returns the size by Brotli, if there is a program of that name.
 fn brotli(bytes: &[u8]) -> Option<usize> {
     let mut program = Command::new("brotli")
         .args(["-c", "-q", "11"])
@@ -154,7 +154,7 @@ fn module(sources: &Path, build: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
     command.arg("--target-dir").arg(build);
     command.current_dir(sources);
     if sysroot.join("lib/rustlib").join(TARGET).join("lib").is_dir() {
-        // It is here.
+        // The standard library for the target is installed.
     } else if sysroot.join("lib/rustlib/src/rust/library").is_dir() {
         command.env("RUSTC_BOOTSTRAP", "1").arg("-Zbuild-std=std,panic_abort");
     } else {
@@ -163,14 +163,14 @@ fn module(sources: &Path, build: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
         )
         .into());
     }
-    // A compiler of rustup has a linker of its own; one of a distribution may name another.
+    // A compiler from rustup has its own linker; one from a distribution may need another.
     let is_there = |program: &str| {
         Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
     };
     if !has_linker(&sysroot) && !is_there("rust-lld") && is_there("wasm-ld") {
         command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", "wasm-ld");
     }
-    // Two numbers at a time, which all browsers since 2023 have, and a stack for deep reflections.
+    // Vectors of two numbers, which all browsers since 2023 have, and a stack for deep reflections.
     command.env("RUSTFLAGS", "-C target-feature=+simd128 -C link-arg=-zstack-size=16777216");
     command.env_remove("CARGO_ENCODED_RUSTFLAGS");
     if !command.status()?.success() {
@@ -188,7 +188,7 @@ fn has_linker(sysroot: &Path) -> bool {
         .any(|linker| linker.with_extension(env::consts::EXE_EXTENSION).exists())
 }
 
-/// Makes the module smaller, if `wasm-opt` of Binaryen is there.
+/// Makes the module smaller, if there is `wasm-opt` of Binaryen.
 fn optimized(module: Vec<u8>) -> Vec<u8> {
     let smaller = || -> io::Result<Vec<u8>> {
         let folder = env::temp_dir().join(format!("tabray-web-{}", std::process::id()));

@@ -1,18 +1,18 @@
-// The scene's text while it is written: errors, completion, and what words mean, as the language server has them.
+// The editor of the scene's text: errors, completion, and the meaning of words, as the language server has them.
 
 const editor = $('#editor'), ground = $('#ground'), proposals = $('#proposals'), tip = $('#hint')
 
-/// A text of several lines, with characters that are not seen as `visible` shows them.
+/// A text of several lines, with invisible characters shown as by `visible`.
 const plain = (text) => text.split('\n').map(visible).join('\n')
 
-// The errors and warnings of the text, each with the places in it.
+// The errors and warnings of the text, each with its place.
 let problems = []
-// The lines of the object that is explained.
+// The lines of the explained object.
 let marked = []
 
 const lineAt = (line) => ground.children[line - 1]
 
-/// Draws what is behind the text: numbers of lines, and marks.
+/// Draws the lines and marks behind the text.
 const drawGround = () => {
   const text = editor.value
   let at = 0
@@ -42,7 +42,7 @@ const scrollGround = () => {
   ground.scrollLeft = editor.scrollLeft
 }
 
-/// Takes in the text of a scene; one that is being written stays.
+/// Takes in the text of a scene, unless the user is writing.
 const write = (text) => { if (editor.value !== text && document.activeElement !== editor) showText(text) }
 
 const showText = (text) => {
@@ -71,20 +71,20 @@ const reveal = ([first] = []) => {
   scrollGround()
 }
 
-/// Changes the text, and has it read.
+/// Changes the text, and reads it.
 const setText = async (text) => {
   if (editor.value !== text) showText(text)
   await changed()
 }
 
-/// Has the text read as it is now, and examined.
+/// Reads and examines the current text.
 const changed = async () => {
   const text = editor.value, examined = examine(text)
   await read(text)
   await examined
 }
 
-/// Changes numbers of the text: its picture is in a hurry, and the rest follows when they rest.
+/// Changes numbers of the text. The picture is rendered at once; the rest follows after a pause.
 let rests = 0
 const setNumbers = async (text) => {
   showText(text)
@@ -134,7 +134,7 @@ const changeSoon = () => {
   soon = setTimeout(changed, 120)
 }
 
-/// Writes in place of a range, so that it can be undone.
+/// Replaces a range, as a step that can be undone.
 const insert = ([start, end], text) => {
   editor.focus()
   editor.setSelectionRange(start, end)
@@ -161,7 +161,7 @@ const placeOf = (at) => {
   return [left + column * wide - editor.scrollLeft, top + line * high - editor.scrollTop, high]
 }
 
-/// The sizes of the text's letters.
+/// The sizes of the text's characters.
 let measured = null
 const metrics = () => {
   if (measured) return measured
@@ -212,7 +212,7 @@ const pick = (index) => {
   editor.setAttribute('aria-activedescendant', `proposal-${chosen}`)
 }
 
-/// Writes the proposal that is chosen; the first place to be filled in is selected.
+/// Writes the chosen proposal, and selects the first place to be filled in.
 const accept = () => {
   const { place, snippet, has_places: hasPlaces } = offered[chosen]
   let first = null, text = ''
@@ -231,9 +231,9 @@ const accept = () => {
   if (first) editor.setSelectionRange(place[0] + first[0], place[0] + first[1])
 }
 
-// What words mean.
+// The meaning of words.
 
-/// Shows a little Markdown.
+/// Shows text with a little Markdown.
 const showHint = (words, place) => {
   tip.replaceChildren(...words.split(/(```[^]*?```|\*\*[^*]+\*\*|`[^`]+`)/).map((part) => {
     const fence = part.match(/^```\w*\n([^]*?)\n?```$/), bold = part.match(/^\*\*(.+)\*\*$/), code = part.match(/^`(.+)`$/)
@@ -272,7 +272,7 @@ editor.addEventListener('pointermove', (event) => {
 })
 editor.addEventListener('pointerleave', () => { clearTimeout(hovers); closeHint() })
 
-/// Tells which value is next.
+/// Shows which value of the attribute is at the cursor.
 let signs = 0
 document.addEventListener('selectionchange', () => {
   if (document.activeElement !== editor || !helper) return

@@ -1,9 +1,9 @@
-// Files that the scene names: dropped onto the page or chosen, and kept in memory.
+// Files that the scene names. They are dropped onto the page or chosen, and kept in memory.
 
-// The most bytes of all files together: what a page takes beside pictures.
+// The maximum size of all files together, in bytes. Pictures need memory as well.
 const MOST_BYTES = 2 ** 28
 
-// The files that the scene names and the page does not have.
+// The files that the scene names but the page does not have.
 let lacking = []
 const lack = (names) => {
   lacking = names
@@ -13,7 +13,7 @@ const lack = (names) => {
 
 const lastOf = (path) => path.split(/[\\/]/).at(-1)
 
-/// Takes files: a scene becomes the text, unless the scene that is there includes it; the others are kept.
+/// Takes files. A scene becomes the text, unless the current scene includes it; the others are kept.
 const take = async (list) => {
   let text = null, bytes = [...kept.values()].reduce((sum, one) => sum + one.length, 0)
   for (const file of list) {

@@ -1,4 +1,4 @@
-// The formula bar: the formula of the scene's surface, and surfaces that have names.
+// The formula bar: the formula of the scene's surface, and named surfaces.
 
 const bar = $('#formula')
 
@@ -11,7 +11,7 @@ const listSurfaces = async () => {
   }))
 }
 
-/// Shows the formula of a text, unless it is being written.
+/// Shows the formula of a text, unless the user is writing one.
 const showFormula = async (text) => {
   const formula = await (await helper('formula', text)).json()
   if (document.activeElement === bar) return

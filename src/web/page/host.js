@@ -1,6 +1,6 @@
-// The page within an editor, which has the text: it tells what is typed, and is told what the page changes.
+// The page within an editor that has the text. The page sends its changes and receives the editor's.
 
-/// What tells the editor, where there is one.
+/// The connection to the editor, if there is one.
 const hosted = window.acquireVsCodeApi && (() => {
   const editing = window.acquireVsCodeApi()
   let last = null, begins

@@ -1,6 +1,6 @@
-// The program, in two web workers: one paints and proves, the other one answers.
+// The program in two web workers: one paints and proves, and the other answers requests.
 
-/// The module: part of this file, or beside it.
+/// Compiles the module: a part of this file, or a file beside it.
 const compiled = async () => {
   const inline = $('#module')
   if (!inline) return WebAssembly.compileStreaming(fetch('tabray.wasm'))
@@ -10,7 +10,7 @@ const compiled = async () => {
 
 const decoder = new TextDecoder()
 
-/// An answer, in the form in which a server's comes.
+/// An answer in the form of a server's.
 const answerOf = (status, bytes) => ({
   ok: status === 200,
   status,
@@ -19,17 +19,17 @@ const answerOf = (status, bytes) => ({
   arrayBuffer: async () => bytes,
 })
 
-// The time in milliseconds after which a worker that has not heard of a new scene is given up.
+// The time in milliseconds after which a worker that has not received a new scene is restarted.
 const PATIENCE = 2000
 
-/// Starts a worker; `hears` takes what it says by itself.
+/// Starts a worker; `hears` takes its messages that answer no request.
 const start = (module, hears) => new Promise((ready) => {
   const source = URL.createObjectURL(new Blob([$('#worker').textContent], { type: 'text/javascript' }))
   const waiting = new Map()
   let worker = null, last = 0
   const ask = (path, body = '', paints = false) => new Promise((done) => {
     const request = { id: ++last, path, body, paints }
-    // What the worker is busy with is of an older scene, and no longer wanted.
+    // The worker is busy with an older scene, which is no longer wanted.
     waiting.set(last, { request, done, timer: paints ? setTimeout(anew, PATIENCE) : 0 })
     worker.postMessage(request)
   })
@@ -64,7 +64,7 @@ const start = (module, hears) => new Promise((ready) => {
   begin()
 })
 
-// The files that the scene may name, by their names as parts of a path.
+// The files that the scene may name, by their encoded names.
 const kept = new Map()
 
 let painter = null, helper = null
@@ -76,10 +76,10 @@ const give = (name, bytes) => {
   for (const ask of [painter, helper]) ask.give(part, bytes)
 }
 
-// The scene of the picture, and the version of the one that the helper has.
+// The scene of the picture, and the version of the helper's scene.
 let painted = { version: 0, text: '' }, helped = 0
 
-/// Reads a text as a scene; its picture follows, if it is one.
+/// Reads a text as a scene. If it is one, its picture follows.
 let reads = 0
 const read = async (text) => {
   const of = ++reads, answer = await painter(`scene/${of}`, text, true)
@@ -88,7 +88,7 @@ const read = async (text) => {
     const { lines, report: words, lacking: names } = await answer.json()
     lack(names ?? [])
     refuse({ lines, report: words, name: nameOf(text), text: null })
-    // The editor tells what has a place in the text.
+    // The editor shows faults that have a place in the text.
     if (lines.length) report('', false)
     return
   }
@@ -98,10 +98,10 @@ const read = async (text) => {
   begin({ ...told, warnings: '', version: of, text, name: nameOf(text) })
 }
 
-/// What a scene calls itself: the first words of a comment at its beginning.
+/// The name of a scene: the first words of a comment at its beginning.
 const nameOf = (text) => text.match(/^#\s*([^:\n]{1,60})/)?.[1].trim() || 'scene'
 
-/// Takes in what the painter sends.
+/// Takes in a message of the painter.
 const hear = (data) => {
   const counted = data.restarted ? 'restarts' : data.late ? 'late' : null
   if (counted) {
@@ -131,7 +131,7 @@ const areas = (buffer) => {
   }
 }
 
-/// Asks the program for something, in the form of a request to a server.
+/// Sends a request to the program, in the form of one to a server.
 const request = async (path, { body = '' } = {}) => {
   const [what, of, name] = path.split('/')
   if (what === 'layer' && name === 'proof') return answerOf(200, proofLayer().buffer)
@@ -143,10 +143,10 @@ const request = async (path, { body = '' } = {}) => {
   return helper(whole, body)
 }
 
-/// What the program answers, in one form or another, or nothing.
+/// The program's answer in one of its forms, or null.
 const ask = (path, form) => request(path).then((answer) => answer.ok ? answer[form]() : null).catch(() => null)
 
-/// Changes the scene: what is changed is written into its text.
+/// Changes the scene: the program writes the change into its text.
 const post = async (path, body) => {
   const answer = await request(path, { body })
   if (!answer.ok) return answer
@@ -167,7 +167,7 @@ const follow = async () => {
   root.dataset.loaded = Math.round(performance.now())
   await listSurfaces()
   await setText(await (hosted ? hosted.first : textOfAddress()) ?? await (await helper('surface/barth-6')).text())
-  // Here, dragging is for the camera from the beginning.
+  // On this page, dragging moves the camera from the beginning.
   toggleSteering()
   stage.blur()
   root.dataset.ready = 1

@@ -1,4 +1,4 @@
-// Keeps the page, so that it is there without a network. A new page has another name of its files' contents.
+// Keeps the page for use without a network. The version in the cache's name depends on the files' contents.
 'use strict'
 const NAME = 'tabray-VERSION', FILES = ['./', 'tabray.wasm', 'icon.svg', 'tabray.webmanifest']
 

@@ -1,4 +1,4 @@
-// What is proven of the pixels: the badge, and the map.
+// The proof of the pixels: the badge, and the map.
 
 // A verdict for each pixel, from the top: 0 not yet, 1 proven, 2 tie, 3 no equation, 4 wrong.
 let verdicts = new Uint8Array(0), judged = 0, tally = [0, 0, 0, 0, 0]
@@ -36,7 +36,7 @@ const tellProof = () => {
   }
 }
 
-/// The map: colours where something is to be seen, and the picture faintly where a pixel is proven.
+/// The map: bright colours of undecided and wrong pixels, and the picture faintly where a pixel is proven.
 const proofLayer = () => {
   const bytes = new Uint8Array(3 * verdicts.length)
   for (let pixel = 0; pixel < verdicts.length; pixel++) {

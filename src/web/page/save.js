@@ -1,4 +1,4 @@
-// Files of what is shown.
+// Files of the scene and its picture.
 
 const files = $('#files')
 const sayFiles = (said) => { files.querySelector('[role=status]').textContent = said }
@@ -11,7 +11,7 @@ const download = (bytes, name, type) => {
   setTimeout(() => URL.revokeObjectURL(link.href), 60000)
 }
 
-/// Makes a file; the picture's are the painter's.
+/// Makes a file. The painter makes those of the picture.
 const file = async (kind) => {
   if (kind === 'ray') return answerOf(200, new TextEncoder().encode(editor.value).buffer)
   if (kind !== 'stl') return painter(`${kind}/${version}`)
@@ -37,7 +37,7 @@ files.addEventListener('toggle', async () => {
   if (!files.open) return
   const names = await ask(`objects/${version}`, 'json') ?? [], select = files.querySelector('select')
   select.replaceChildren(...names.map((name) => new Option(visible(name), name)))
-  // Of a surface by its formula, what clips it is the first object.
+  // In a surface's scene, the first object clips the surface.
   if (names.includes('surface')) select.value = 'surface'
 })
 document.addEventListener('pointerdown', (event) => { if (!files.contains(event.target)) files.open = false })

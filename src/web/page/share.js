@@ -1,4 +1,4 @@
-// The address has the scene: what is behind its # is the text, compressed.
+// The address holds the scene: the text after its # is compressed.
 
 const through = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer())
 
@@ -8,7 +8,7 @@ const addressOf = async (text) => {
   return `#scene=${btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '')}`
 }
 
-/// The text that the address has; `#surface=NAME` and `#formula=FORMULA` are short for some.
+/// The text of the address. `#surface=NAME` and `#formula=FORMULA` are short forms.
 const textOfAddress = async () => {
   const [, kind, value] = location.hash.match(/^#(scene|surface|formula)=(.*)$/) ?? []
   try {
@@ -29,7 +29,7 @@ const textOfAddress = async () => {
   }
 }
 
-// The part of the address that this page has written itself.
+// The part of the address that this page wrote.
 let own = ''
 const writeAddress = async () => {
   own = await addressOf(editor.value)

@@ -1,16 +1,16 @@
-// One of two web workers: the program, which answers requests, paints a picture step by step, and then proves its pixels.
+// One of two web workers. The program answers requests, paints a picture in steps, and then proves its pixels.
 'use strict'
 
-// The least time in milliseconds for which the program works before the worker hears what is wanted next.
+// The minimum time in milliseconds that the program works before the worker receives the next message.
 const TURN = 30
 
 let module = null, program = null
-// The picture that is worked on: its version, what is done ('paint' or 'prove'), and how much of it in one turn.
+// The picture in work: its version, the kind of work ('paint' or 'prove'), and the amount of one turn.
 let job = null
 
 const coder = new TextEncoder(), decoder = new TextDecoder()
 
-// The files that the scene may name, by their names as parts of a path.
+// The files that the scene may name, by their encoded names.
 const held = new Map()
 
 const begin = () => {
@@ -33,7 +33,7 @@ const ask = (path, body = '') => {
   return { status, bytes }
 }
 
-/// Asks the program; where it ends on that, begins anew.
+/// Asks the program. If the program ends with an error, starts it again.
 const askSafely = (path, body) => {
   try {
     return ask(path, body)
@@ -62,7 +62,7 @@ port1.onmessage = () => {
     job = null
     return postMessage({ version, ended: decoder.decode(bytes) })
   }
-  // The plan is made anew in each turn: much of a turn must be spent on more than that.
+  // Each turn makes the plan again, so it must be long enough for more than that.
   if (!count) return Object.assign(job, { turn: Math.max(TURN, 4 * took), count: 4 }), goOn()
   if (took < job.turn / 2) job.count = 2 * count
   else if (took > 2 * job.turn) job.count = Math.max(1, count >> 1)
