@@ -87,8 +87,8 @@ fn refuse_other(kind: &Metadata) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns options of opening and reading that never wait: some files of the system, such as `/proc/kmsg`, get more
-/// to read only later.
+/// Returns options of opening and reading that never wait: some files of the system, such as `/proc/kmsg`, have
+/// nothing more to read until later.
 fn without_waiting() -> OpenOptions {
     #[cfg_attr(not(unix), allow(unused_mut, reason = "only there is something to be set"))]
     let mut options = OpenOptions::new();
@@ -97,7 +97,7 @@ fn without_waiting() -> OpenOptions {
     options
 }
 
-/// Returns a path without `..` where the folder before it is named.
+/// Returns a path in which each `..` is removed together with the named folder before it.
 pub fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {

@@ -98,11 +98,11 @@ impl Query<'_> {
     }
 }
 
-/// The bounds of the crossings of a ray and a shape, each with whether the ray enters there and the face, and the
-/// distance from which on nothing is known.
+/// The crossings of a ray and a shape, each with its bounds, whether the ray enters, and its face; and the distance
+/// beyond which nothing is known.
 type Along = (Vec<(Wide, bool, Option<u32>)>, f256);
 
-/// Returns the crossings of a ray and a shape as one precision tells them.
+/// Returns the crossings of a ray and a shape in one precision.
 fn along<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Along {
     let line = ray.sight().line::<Interval<F>>();
     let Some(proven) = shape.proven() else { return (Vec::new(), f256::of(0.0)) };
@@ -125,7 +125,7 @@ fn exactly(shape: &AnyShape, ray: &ExactRay) -> Option<Along> {
         return Some((Vec::new(), f256::INFINITY));
     }
     let (found, open) = along::<Fraction>(shape, ray);
-    // A ray that touches an edge and passes by seems to enter there, or to leave.
+    // At an edge, a ray that passes by seems to enter or to leave.
     let is_in_turns =
         found.is_sorted_by(|one, other| one.1 != other.1) && found.last().is_none_or(|last| !last.1);
     let is_plain = is_in_turns || shape.why_not_closed().is_some();

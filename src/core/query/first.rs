@@ -11,9 +11,9 @@ use tabray_exact::interval::{Float, Wide};
 pub enum FirstHits {
     /// Certainly this object, by its index, with bounds of its distance, or certainly nothing.
     Certain(Option<(usize, Wide)>),
-    /// One of these objects, each with what is known about its distance, in the order of their indices.
+    /// One of several objects, or perhaps nothing.
     OneOf {
-        /// The objects.
+        /// The objects, in the order of their indices, each with the proof of its hit.
         any: Vec<(usize, Enclosure)>,
         /// A distance up to which something is certainly hit; infinite where perhaps nothing is.
         end: f256,

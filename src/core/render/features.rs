@@ -28,10 +28,10 @@ pub(crate) struct Features {
     count: Option<usize>,
 }
 
-/// The bounds of a small object as they are seen.
+/// The projected bounds of a small object.
 #[derive(Clone)]
 struct SmallObject {
-    /// The columns and rows of the pixels on which it is projected.
+    /// The columns and rows of the pixels that it covers.
     columns: RangeInclusive<u32>,
     rows: RangeInclusive<u32>,
     /// The distance from the viewer to its bounds in world units.

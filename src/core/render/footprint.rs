@@ -52,7 +52,7 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Returns the colour in the middle of what is possible, before exposure.
+    /// Returns the colour about midway between the bounds as shown, before exposure.
     pub fn middle(&self, display: &Display) -> Rgb {
         display.middle([self.low, self.high])
     }
@@ -89,7 +89,7 @@ impl Proof {
 struct Footprint {
     /// The image position of its middle, in pixels.
     middle: [f64; 2],
-    /// The number of times that it was cut.
+    /// The number of cuts that led to it.
     cuts: u32,
     /// Encloses the mean of its colours.
     mean: [Interval; 3],

@@ -82,8 +82,8 @@ pub enum Count {
     },
     /// A pixel has used up its ray budget; it lacks at most this much light in any channel.
     Cut(f64),
-    /// This number of rays from the viewer lack light from mirrors or through glass, because the notes' rules end its
-    /// path.
+    /// This number of rays from the viewer lack light from mirrors or through glass, because the notes' rules end
+    /// their paths.
     Far(usize),
     /// A pixel has a camera ray for which it is undecided whether it hits the object of this index first.
     Undecided(usize, Doubt),

@@ -14,7 +14,7 @@ pub struct RayStats {
     rays: [u64; RayKind::ALL.len()],
     /// The counts of each object, by the object's index.
     tests: Vec<TestCounts>,
-    /// The pixels that are not as they should be.
+    /// The flawed pixels.
     pub flaws: Flaws,
     /// The pixels with proven bounds of their colours.
     pub proofs: Proofs,

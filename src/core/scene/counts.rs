@@ -47,7 +47,7 @@ impl Counts {
         }
     }
 
-    /// Says how many values of a type there are, whose name ends the phrase: "1 or 3 numbers", "2 to 64 pairs of
+    /// Describes a number of values. The noun for the values ends the phrase: "1 or 3 numbers", "2 to 64 pairs of
     /// numbers".
     pub fn describe(self, noun: &str) -> String {
         match self {

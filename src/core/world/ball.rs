@@ -31,7 +31,7 @@ impl Ball {
         let between = self.middle - at;
         let (distance, radius) = (between.length(), self.radius);
         let is_outside = distance > radius;
-        // 1 minus the cosine of half the angle at which it is seen.
+        // 1 minus the cosine of the ball's angular radius.
         let (axis, height) = if is_outside {
             let (sine, square) =
                 (radius / distance, (distance - radius) / distance * (1.0 + radius / distance));

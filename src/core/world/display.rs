@@ -165,10 +165,10 @@ impl Display {
         }
     }
 
-    /// Bounds how much any channel of the shown colour changes, as a multiple of the change of light.
+    /// Bounds the change of any channel of the shown colour, as a multiple of the change of light.
     pub fn steepest(&self) -> f64 {
-        // A channel of the tone mapper loses what the least one adds, the brightest one scales all, and whitening adds less
-        // than a sixth: at most 2 * 2.15.
+        // The tone mapper subtracts the toe, which depends on the least channel, scales all channels by the
+        // brightest, and whitens by less than a sixth: at most 2 * 2.15.
         let tone = if self.tone == Tone::Clip { 1.0 } else { 5.0 };
         self.gain * tone * self.transfer.steepest()
     }

@@ -16,7 +16,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// Returns the unit vector that it faces on one of its sides.
+    /// Returns the unit normal of one of its sides.
     pub fn facing(&self) -> DVec3 {
         self.half[0].cross(self.half[1]).normalize()
     }

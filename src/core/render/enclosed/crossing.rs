@@ -10,7 +10,7 @@ use tabray_exact::scalar::{constants, dot, per_axis};
 pub(super) struct Crossings<N> {
     /// The fraction of the light that is reflected.
     pub reflected: Colour<N>,
-    /// The unit directions in which the rest is transmitted, if it is.
+    /// The unit directions of the transmitted rest; `None` if it is absorbed.
     pub onward: Option<[N; 3]>,
 }
 

@@ -73,7 +73,7 @@ impl<'s> EnclosingTracer<'s> {
         self.is_spent
     }
 
-    /// Tells whether branches were bounded because nothing else is known of them.
+    /// Tells whether any branch was only bounded by its largest magnitude.
     pub fn is_open(&self) -> bool {
         self.is_open
     }

@@ -153,7 +153,7 @@ pub(super) struct Round<N: Number> {
     pub distance: N,
     /// The radius around its middle.
     pub radius: N,
-    /// The cosine of half the angle at which it is seen.
+    /// The cosine of its angular radius.
     cosine: N,
     /// The ends of lines to the disc around its middle that looks the same.
     pub ends: Ends<N::End>,

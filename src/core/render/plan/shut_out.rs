@@ -14,7 +14,7 @@ use glam::DVec3;
 /// object's: far more than their rounding. A light nearer to the object counts as being on the surface.
 const MARGIN: f64 = 1e-9;
 
-/// The objects of a plan, as they are searched.
+/// The objects of a plan, for searches.
 pub(super) struct Objects<'p> {
     pub unbounded: &'p [usize],
     pub bounded: &'p [(usize, Aabb)],

@@ -24,8 +24,8 @@ const LEFT: f64 = 0.5;
 const UNSEEN: f64 = 0.25;
 const UNSEEN_WITHIN: f64 = 0.06;
 
-/// The number of estimated errors by which a colour beyond white or black may be off. A colour that is farther beyond
-/// is not taken for one that can be shown.
+/// The largest deviation, in estimated errors, that the error of a shown colour allows for. A colour farther beyond
+/// white or black counts as clipped.
 const FAR: f64 = 4.0;
 
 /// The scratch space of pixels that take more samples where that is needed.

@@ -66,7 +66,7 @@ impl Surface {
         SurfacePoints { positions: self.points.view(count), seen: &self.seen }
     }
 
-    /// Finds what the object's shader sees of the points beside their positions, and lets it bend the normals.
+    /// Computes the shader's inputs at the points besides their positions, and lets the shader bend the normals.
     pub fn see(&mut self, Object { shape, shader, .. }: &Object, count: usize, patches: Option<SeenPatches>) {
         self.seen.clear();
         let (bends, sees) = (shader.bends(), shader.sees());

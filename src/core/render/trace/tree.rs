@@ -145,7 +145,7 @@ pub(super) struct Tree {
 /// How a tree has ended.
 pub(super) struct End {
     pub colour: Rgb,
-    /// 0 for a known colour; else how far its bounds are apart, in levels, infinite where there are none.
+    /// The distance of the colour's bounds, in levels: 0 for a known colour, infinite without bounds.
     pub apart: f64,
 }
 
@@ -180,7 +180,7 @@ impl Ends {
         }
     }
 
-    /// Returns how far colours are apart, in levels of a byte, as an image shows them: the largest of the channels.
+    /// Returns the distance of two colours, in levels of a byte, as an image shows them: the largest of the channels.
     /// Where samples are averaged, light above white counts, too, with the least slope below white.
     fn levels_apart(&self, [low, high]: [Rgb; 2]) -> f64 {
         let [least, most] = self.display.shown_within([low, high]);

@@ -107,7 +107,7 @@ impl<T: Hittable + Equation, S> HitQueries for Shape<T, S, ByFormula> {
     }
 }
 
-/// Lets the equation of shapes prove what is certain about their hits.
+/// Implements the proofs of hits by a shape's equation.
 macro_rules! by_equation {
     ($Bound:ident, $Strategy:ty, $($more:tt)*) => {
         impl<T: $Bound, S> HitQueries for Shape<T, S, $Strategy> {

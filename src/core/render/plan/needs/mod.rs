@@ -54,15 +54,15 @@ pub struct Needs {
 /// Why a light is not needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnlitReason {
-    /// What is seen reflects none of its light.
+    /// Visible surfaces reflect none of its light.
     Black,
-    /// All that is seen turns away from it.
+    /// Visible surfaces turn away from it.
     Behind,
-    /// It does not shine on what is seen.
+    /// It does not shine on visible surfaces.
     Aside,
-    /// Several of these reasons hold, each for a part of what is seen.
+    /// Several of these reasons hold, each for a part of the visible surfaces.
     Mixed,
-    /// A closed object is between it and all that is seen.
+    /// A closed object is around either the light or the viewer.
     ShutOut,
 }
 
@@ -80,7 +80,7 @@ impl UnlitReason {
 }
 
 impl Needs {
-    /// Returns the needs of a model of which nothing is left out.
+    /// Returns the needs of a model when nothing is left out.
     pub fn all(model: &Model) -> Self {
         let lights = (0..model.lights.len()).collect();
         Self { lights, dark: Vec::new(), unreached: Vec::new(), clearance: f64::INFINITY }
@@ -112,14 +112,14 @@ impl Needs {
     }
 }
 
-/// A scene, and what is known of it.
+/// A scene, with the bounds and the depth of its objects.
 struct KnownScene<'s> {
     model: &'s Model,
     bounds: &'s [Option<Aabb>],
     depth: Option<&'s Depth>,
 }
 
-/// A view, and the indices of the objects that it may show; without a view, of those that are seen from anywhere.
+/// A view, and the indices of the objects that it may show. Without a view, the objects may be seen from anywhere.
 type Shown<'v> = (Option<&'v View>, &'v [usize]);
 
 impl KnownScene<'_> {
