@@ -58,7 +58,7 @@ pub struct Identity {
     size: [usize; 2],
     /// The hashes of the textures' images, by the names of the textures.
     textures: BTreeMap<String, String>,
-    /// The first of the tiles that a checkpoint of a part is for, and the first after them.
+    /// The range of tiles of a part's checkpoint: the first one, and the first after them.
     #[serde(skip_serializing_if = "Option::is_none")]
     tiles: Option<[usize; 2]>,
     /// The version of tabray.

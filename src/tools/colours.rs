@@ -76,11 +76,11 @@ struct Attempt {
     meets_uncertified: bool,
 }
 
-/// What is known of a pixel's colour in one precision.
+/// The enclosure of a pixel's colour in one precision.
 struct Enclosed<F: Endpoint> {
     /// The colour; `None` where it is open.
     colour: Option<Colour<Interval<F>>>,
-    /// Whether branches were bounded because nothing else is known of them.
+    /// Whether any branch was only bounded by its largest magnitude.
     is_open: bool,
     /// Whether branches were not followed because of a limit.
     is_spent: bool,
@@ -207,8 +207,8 @@ impl<'p, 'm> Prover<'p, 'm> {
 /// that does not, and the greatest of one that leaves out rays.
 type Possible = [u8; 4];
 
-/// The most levels by which an image of the free rules is off where rays are left out: the middle of bounds that are
-/// up to a level apart is shown.
+/// The maximum error in levels of an image of the free rules where rays are left out: the image shows the middle of
+/// bounds that are up to a level apart.
 const MOST_OFF: f64 = 0.5;
 
 /// Returns the bytes of a channel under the notes' rules. `missing` is the most that the image may lack.

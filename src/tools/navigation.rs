@@ -217,7 +217,7 @@ mod tests {
         sensor.ray(x, y).at(if is_window(camera) { 2.0 } else { 0.7 } * reach(camera))
     }
 
-    /// Where the camera that stands there shows a point; `None` where it does not say.
+    /// Returns the image position of a point for a camera in a pose; `None` where the camera does not tell it.
     fn place(camera: &Args, pose: &CameraPose, point: DVec3) -> Option<[f64; 2]> {
         match placed(&mut camera.clone(), pose).expect("it may stand there").project(point) {
             Projected::At(place) => Some(place.into()),

@@ -1,10 +1,10 @@
-//! An upper bound on the mean of numbers of which some have been drawn at random, whatever their distribution.
+//! An upper bound on the mean of numbers of any distribution, some of which have been drawn at random.
 //!
-//! Someone who believes that the mean is at least `m` is offered bets whose stakes grow where the numbers drawn are
-//! smaller than that. If the mean is at least `m`, nobody multiplies their money by `1 / doubt` with a greater
-//! probability than `doubt` (Ville's inequality), at any time: so a mean at which the bets win that much is refuted. The
-//! bets are about the numbers that are left, since none is drawn twice (I. Waudby-Smith and A. Ramdas, "Estimating means
-//! of bounded random variables by betting", 2024).
+//! A gambler who believes that the mean is at least `m` is offered bets whose stakes grow where smaller numbers are
+//! drawn. If the mean is at least `m`, the probability that the bets ever multiply the money by `1 / doubt` is at
+//! most `doubt` (Ville's inequality). So bets that win that much refute the mean. The bets are about the numbers that
+//! are left, since none is drawn twice (I. Waudby-Smith and A. Ramdas, "Estimating means of bounded random variables
+//! by betting", 2024).
 
 /// Numbers of at most 1, drawn at random from `all` of them without replacement.
 pub(super) struct Drawn<'d> {
@@ -16,8 +16,8 @@ pub(super) struct Drawn<'d> {
 const HALVINGS: usize = 40;
 
 impl Drawn<'_> {
-    /// Bounds the mean of all numbers; it is greater with a probability of at most `doubt`. It is the mean itself where all
-    /// are known.
+    /// Bounds the mean of all numbers: it is greater than the bound with a probability of at most `doubt`. If all
+    /// numbers are known, the bound is their mean.
     pub fn bound(&self, doubt: f64) -> f64 {
         let count = self.numbers.len();
         let mean = self.numbers.iter().sum::<f64>() / count as f64;
@@ -36,7 +36,7 @@ impl Drawn<'_> {
         high
     }
 
-    /// Returns the part of the money that is staked on each number: it depends on the numbers before it alone.
+    /// Returns the part of the money that is staked on each number. It depends only on the numbers before.
     fn stakes(&self, doubt: f64) -> Vec<f64> {
         let wanted = -2.0 * libm::log(doubt) / self.numbers.len() as f64;
         let (mut sum, mut squares) = (0.0, 0.25);

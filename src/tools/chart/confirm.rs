@@ -80,7 +80,7 @@ pub(super) struct Known<'k> {
     pub draw: &'k Draw,
 }
 
-/// The plans of which pixels are measured.
+/// The renderer and the plans of a confirmation.
 pub(super) struct Plans<'p, 'm> {
     pub threads: &'p Renderer,
     /// The scene, with its own accuracy.

@@ -21,11 +21,11 @@ const MORE: usize = 64;
 /// About the CPU time that the first packets of a choice may take, in seconds.
 const FIRST: f64 = 0.02;
 
-/// The number of standard errors by which the time of an image may be off.
+/// The assumed error of an image's time, in standard errors.
 const DEVIATIONS: f64 = 3.0;
 
-/// The relative error of counted rays that is small enough, and the greatest number of packets and CPU time in
-/// seconds that it may take.
+/// The sufficient relative error of counted rays, and the maximum number of packets and CPU time in seconds for
+/// counting.
 const COUNTED: f64 = 0.1;
 const MOST_COUNTED: usize = 128;
 const COUNTING: f64 = 0.1;
@@ -43,7 +43,8 @@ const IN_VAIN: usize = 64;
 /// The relative error of a time that is exact enough.
 const EXACT: f64 = 0.2;
 
-/// The greatest CPU time for making a time more exact, in seconds, and the part of the image that it may trace.
+/// The maximum CPU time for making a time more exact, in seconds, and the maximum part of the image that is traced
+/// for it.
 const LONGEST: f64 = 0.6;
 const PART: f64 = 0.25;
 
@@ -52,7 +53,7 @@ const PART: f64 = 0.25;
 pub struct Estimated {
     /// The time.
     pub mean: f64,
-    /// The least and the greatest time that it may well be.
+    /// The least and the greatest plausible time.
     pub range: [f64; 2],
 }
 
@@ -82,7 +83,7 @@ struct Packet {
     pixels: usize,
     seconds: f64,
     rays: Rays,
-    /// How many times it has been looked at.
+    /// The number of times that it has been looked at.
     looked: f64,
 }
 
@@ -97,7 +98,8 @@ impl Timing {
         timing
     }
 
-    /// Times more packets until the time is exact enough or the part of the image is large. Tells whether it goes on.
+    /// Times more packets, unless the time is exact enough or the timed part of the image is large. Returns whether
+    /// it did.
     pub fn refine(&mut self, plan: &Plan, threads: &Renderer, counted: Option<&Counted>) -> bool {
         let [width, height] = plan.camera.pixels;
         let pixels: usize = self.packets.iter().map(|packet| packet.pixels).sum();

@@ -13,9 +13,8 @@ const WORST: f64 = 0.001;
 /// The probability with which a promise may be wrong.
 const DOUBT: f64 = 0.01;
 
-/// Returns the probability with which each part of one of this many bounds may be wrong. There are two parts, the
-/// pixels that are not measured and the noise of the right colours, and two phases: comparing choices, and confirming
-/// one.
+/// Returns the allowed probability that one part of one of `bounds` bounds is wrong. There are two parts, the pixels
+/// that are not measured and the noise of the right colours, and two phases: comparing choices, and confirming one.
 pub(super) fn doubt_of_each(bounds: usize) -> f64 {
     0.25 * DOUBT / bounds as f64
 }
@@ -164,7 +163,7 @@ impl Errors {
             sorted(&mut small.iter().zip(&image.missed.pixels).map(|(error, missed)| error.worst + missed))
         };
         let rest = image.all - image.missed.pixels.len();
-        // If `above` of the small pixels exceed the percentile, this part of the others does.
+        // If `above` of the small pixels exceed the percentile, this part of the others may exceed it.
         let allowed = (WORST * image.all as f64) as usize;
         let percentile = |small: &[f64], of_rest: &dyn Fn(f64) -> f64| {
             let least = |above: usize| {

@@ -49,7 +49,7 @@ const WANTED: f64 = 0.15;
 /// most 2 / e.
 const EXPECTED: f64 = 0.541_341_132_946_451;
 
-/// The number of samples that miss a thing with a probability of 1 % is this divided by the part of the cell that it takes.
+/// Divided by the part of a cell that a thing takes, the number of samples that miss it with a probability of 1 %.
 const SURE: f64 = 4.605_170_185_988_091;
 
 /// A pixel that may show something bright and small.

@@ -26,15 +26,15 @@ pub const SLACK: f64 = 1e-7;
 /// whether and where it hits.
 pub const GRAZING: f64 = 0.05;
 
-/// The distance of rays from a ray that stands for them, as a fraction of the same numbers: some thousand times as
-/// far as those of a copy that is not distorted.
+/// The distance between rays and the ray that represents them, as a fraction of the same numbers: some thousand times
+/// that of the rays of an undistorted copy.
 const DRIFT: f64 = 1e-10;
 
 /// A shape and the ray with which it is tried.
 pub struct RayTrial<'s> {
     pub shape: &'s AnyShape,
     pub ray: Ray,
-    /// Whether the ray may hit an edge or a corner, where rounding decides what a ray from elsewhere hits.
+    /// Whether the ray may hit an edge or a corner, where rounding decides what rays from elsewhere hit.
     pub is_exact: bool,
 }
 

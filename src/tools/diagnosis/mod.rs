@@ -93,7 +93,7 @@ fn flat(model: &Model) -> Option<Remark> {
     of_sky.or_else(|| model.objects.iter().find(is_rough).map(|object| said(object.args.name(), rough)))
 }
 
-/// Returns the remark on a model's image, of which a few pixels are tried.
+/// Returns the remark on a model's image, from a few of its pixels.
 pub fn tried(model: &Model) -> Option<Remark> {
     // The deepest reflections need more of a stack than the program's own thread has.
     renderer_with(1).ok()?.run(|| tried_here(model))

@@ -12,13 +12,13 @@ const MOST_TESTS: usize = 1 << 23;
 /// The effect of a light at the places that are looked at.
 #[derive(Clone, Debug)]
 pub struct Lamp {
-    /// The least distance of a place on which it shines, in world units.
+    /// Its least distance from a place that it lights, in world units.
     pub near: f64,
-    /// The most light that it adds in any channel, as the viewer sees it.
+    /// The most light that it adds to any channel of the image.
     pub most: f64,
-    /// The most light that it would add without any division by lengths.
+    /// That light without any division by lengths.
     pub free: f64,
-    /// The number of places on which it shines.
+    /// The number of places that it lights.
     pub shines: usize,
     /// The number of places that objects hide from it.
     pub blocked: usize,
@@ -51,8 +51,8 @@ struct Hit {
     point: DVec3,
     distance: f64,
     ambient: f64,
-    /// For each light that shines on it: its index, the light that it adds before a division by the length of the
-    /// path, and its distance.
+    /// For each light that shines on the point: its index, the light that it adds before a division by the length of
+    /// the path, and its distance.
     lit: Vec<(usize, f64, f64)>,
 }
 

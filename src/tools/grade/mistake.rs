@@ -4,12 +4,12 @@ use super::views::View;
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 
-/// A way in which pixels of a picture differ.
+/// A kind of difference between pixels of a picture and of its image.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mistake {
-    /// The whole picture is seen in another way.
+    /// The whole picture is changed in one way.
     View(View),
-    /// Another object is seen: this one, where that one is right; `None` for nothing.
+    /// The pixel shows another object; `None` for nothing.
     Object {
         /// The index of the object that the picture shows.
         shown: Option<usize>,

@@ -1,4 +1,4 @@
-//! Compares a picture with the image of its scene, and finds out in what way it differs. The scene is rendered with
+//! Compares a picture with the image of its scene, and finds the kinds of differences. The scene is rendered with
 //! usual mistakes, and a mistake is named where the picture has its colours.
 
 mod compared;
@@ -19,7 +19,7 @@ pub use views::View;
 /// The pixels that differ in one way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// The way in which they differ.
+    /// The kind of difference.
     pub mistake: Mistake,
     /// Their number.
     pub pixels: usize,
@@ -32,7 +32,7 @@ pub struct Finding {
 pub struct Grade {
     /// The number of all pixels.
     pub pixels: usize,
-    /// The ways in which pixels differ, that of the most pixels first.
+    /// The differences by kind, that of the most pixels first.
     pub findings: Vec<Finding>,
 }
 

@@ -18,7 +18,7 @@ use tabray_core::world::material::{Material, Rgb};
 /// The maximum number of changed scenes.
 const MOST_TRIALS: usize = 256;
 
-/// The maximum number of lights that are tried one by one.
+/// The maximum number of lights for which trials are made one by one.
 const MOST_LIGHTS: usize = 6;
 
 /// The number of objects that are taken away, one behind the other.
@@ -63,7 +63,7 @@ struct Trials<'t, E> {
     left: usize,
 }
 
-/// Explains pixels that differ from what is right in this view.
+/// Explains pixels that differ from the right image in this view.
 ///
 /// # Errors
 /// Returns the errors of `make`.

@@ -15,25 +15,25 @@ use tabray_core::world::material::Rgb;
 /// How levels follow from light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Curve {
-    /// As the scene says.
+    /// The scene's own curve.
     #[default]
     Right,
-    /// With the curve of sRGB applied once more.
+    /// The curve of sRGB, applied once more.
     Encoded,
-    /// With the curve of sRGB taken back once too often.
+    /// The inverse curve of sRGB, applied once more.
     Decoded,
     /// To the power of 1 / 2.2.
     Brightened,
     /// To the power of 2.2.
     Darkened,
-    /// With red and blue in each other's place.
+    /// Red and blue exchanged.
     Swapped,
 }
 
-/// The way in which a picture as a whole is seen.
+/// A change of a picture as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct View {
-    /// Whether columns, and whether rows, go the other way.
+    /// Whether the columns, and whether the rows, are reversed.
     pub flipped: [bool; 2],
     /// The shift to the right and up, in halves of a pixel.
     pub shift: [i32; 2],
@@ -44,7 +44,7 @@ pub struct View {
 /// The largest shift that is tried, in pixels.
 const FARTHEST: i32 = 3;
 
-/// The number of pixels by which a view is tried first.
+/// The number of pixels in the first test of a view.
 const TRIED: usize = 4096;
 
 impl Curve {

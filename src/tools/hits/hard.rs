@@ -1,9 +1,8 @@
 //! Rays aimed at the places where methods fail: at outlines, edges, seams and corners, and beside them at ever
 //! smaller distances.
 //!
-//! Places are found from hits alone, without knowing any shape: between two rays with different hits lies a ray that
-//! passes between the things that they hit, and in a triangle of three such rays lies a corner, where three things
-//! meet.
+//! Places are found from hits alone, without knowing any shape. Between two rays with different hits, a ray passes
+//! the border of two things; in a triangle of three such rays lies a corner, where three things meet.
 
 use super::answers::AnswerFormat;
 use glam::DVec3;
@@ -52,12 +51,12 @@ pub struct HardRay {
     pub dir: DVec3,
     /// The target.
     pub place: Place,
-    /// The distance at which it passes the place, as a part of the size of the scene's object; 0 for the place
-    /// itself, up to rounding.
+    /// Its distance from the place, as a part of the size of the scene's object; 0 for the place itself, up to
+    /// rounding.
     pub offset: f64,
 }
 
-/// The number of places that are looked for at one time.
+/// The number of places that are searched for at one time.
 const TOGETHER: usize = 256;
 
 /// The number of rays among which three around a corner are looked for.
@@ -207,8 +206,8 @@ impl Search {
         rays.iter().zip(query.traced(&rays)).map(label).collect()
     }
 
-    /// Follows the border of the first thing from where it meets the second to where it meets the third. Tells
-    /// whether that leads to one place.
+    /// Follows the border of the first thing from the second thing to the third. Tells whether that leads to one
+    /// place.
     fn corner(&mut self, query: &Query) -> bool {
         let [inner, b, c] = self.ends[..] else { return false };
         let [mut one, mut other] = [b, c].map(|outer| self.border(query, inner, outer, 0.0)[1]);

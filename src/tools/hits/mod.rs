@@ -33,7 +33,7 @@ pub struct Asked {
     pub all: bool,
     /// Whether it only matters that something is hit, not what.
     pub any: bool,
-    /// The end of rays that have none of their own, in the unit of their t.
+    /// The default end of rays, in the unit of their t.
     pub t_max: f64,
     /// Whether invalid rays are left out.
     pub skip_bad: bool,
@@ -57,7 +57,7 @@ pub enum Ended {
     Unwritten(io::Error),
 }
 
-/// A ray that is asked about, and the t at which it ends.
+/// A ray of a query, with the t of its end.
 type Ray = (ExactRay, f64);
 
 /// Answers all rays of a reader, in their order. The answers depend on the rays alone, not on the threads. `step`

@@ -12,7 +12,7 @@ pub struct SurfaceMesh {
     pub cell: f64,
     /// The places where it is not proven that the surface and the mesh are near each other: low and high corners.
     pub far: Vec<[DVec3; 2]>,
-    /// The places where the surface may have other parts than the mesh, or may be joined in another way; `None` where
-    /// that was not examined.
+    /// The places where the surface may have other parts than the mesh, or may be joined differently; `None` if not
+    /// examined.
     pub tangled: Option<Vec<[DVec3; 2]>>,
 }

@@ -22,8 +22,7 @@ pub struct Proof {
 }
 
 /// Finds the places where the mesh and the surface may be farther from each other than the error, and those where the
-/// surface may turn by a right angle within a cell. Unless all of them are asked for, the search ends soon after the
-/// first.
+/// surface may turn by a right angle within a cell. Unless `all` is set, the search ends soon after the first place.
 pub fn of(cells: &Cells, triangles: &Triangles, body: &Body<'_>, error: f64, all: bool) -> Proof {
     let half = cells.side() / 2.0;
     let cube = |cell: usize| {
