@@ -29,7 +29,7 @@ pub struct Asked {
     pub tight: bool,
 }
 
-/// The rays that are asked about.
+/// The rays of a query.
 pub struct Rays<'py> {
     count: usize,
     origins: Rows<'py>,

@@ -6,7 +6,7 @@ use tabray_lang::registry::Registry;
 /// The name of the scene in messages.
 pub const NAME: &str = "scene";
 
-/// Replaces the system's reason why a file cannot be read by advice: a page has only the files that it was given.
+/// Replaces the system's error about a file with advice: a page has only the files that it was given.
 pub fn without_files(message: &str) -> String {
     message.replace(
         "operation not supported on this platform",
