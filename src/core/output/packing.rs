@@ -54,8 +54,8 @@ impl<'r> Packing<'r> {
         }
     }
 
-    /// Compresses all rows, and passes the bytes of the zlib stream to `put`. Where `rows` ends with an error, `put` gets
-    /// the rows before it.
+    /// Compresses all rows, and passes the bytes of the zlib stream to `put`. Where `rows` ends with an error, `put`
+    /// gets the rows before it.
     ///
     /// # Errors
     /// Returns the errors of `rows` and of `put`, and an error where the number of rows is not that of the image.
@@ -127,7 +127,8 @@ impl<'r> Packing<'r> {
         let (pieces, compression) = (take(&mut self.pieces), self.compression);
         let is_last = pieces.last().is_some_and(|piece| piece.is_last);
         let pack_all = || {
-            // Where there are fewer pieces than threads, each piece is compressed by several. One thread needs no stripes.
+            // Where there are fewer pieces than threads, each piece is compressed by several. One thread needs no
+            // stripes.
             let threads = parallel::threads();
             let stripes = if threads == 1 { 1 } else { (2 * threads).div_ceil(pieces.len().max(1)) };
             parallel::map(pieces.len(), |piece| pieces[piece].pack(compression, stripes))

@@ -12,7 +12,8 @@ pub enum Verdict {
     Hit,
     /// The ray hits nothing.
     Miss,
-    /// The ray passes exactly through the edge of this object, as far as 237 bits tell, and hits nothing else before it.
+    /// The ray passes exactly through the edge of this object, as far as 237 bits tell, and hits nothing else before
+    /// it.
     Edge,
     /// The ray hits several objects first at once, as far as 237 bits tell.
     Tie,

@@ -31,7 +31,8 @@ impl<'m> Query<'m> {
         self.plan.model
     }
 
-    /// Returns the ray through the middle of a pixel of the scene's camera, by column and row from the lower left corner.
+    /// Returns the ray through the middle of a pixel of the scene's camera, by column and row from the lower left
+    /// corner.
     pub fn camera_ray(&self, x: usize, y: usize) -> ExactRay {
         ExactRay::of_camera(self.plan.camera.sight(x as f64, y as f64))
     }
@@ -42,8 +43,8 @@ impl<'m> Query<'m> {
         trace::first_hits(&self.plan, &sights)
     }
 
-    /// Proves what a ray hits first. `found` is what the tracer finds, where that is known; the proof does not depend on
-    /// it, but is faster with it.
+    /// Proves what a ray hits first. `found` is what the tracer finds, where that is known; the proof does not depend
+    /// on it, but is faster with it.
     ///
     /// A proof is about the real numbers of the scene and of the ray ([`certify`](crate::world::certify)). In a scene
     /// with many objects, it leaves out those whose bounding boxes the ray certainly misses or meets later.

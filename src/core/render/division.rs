@@ -47,7 +47,7 @@ impl Grid {
         tiles.map(|index| self.pixels(index)).sum()
     }
 
-    /// Divides some tiles into runs that are rectangles of up to `most` rows of tiles: the rest of a row, whole rows, and
+    /// Divides tiles into runs that are rectangles of up to `most` rows of tiles: the rest of a row, whole rows, and
     /// the beginning of a row.
     pub fn rectangles(self, tiles: &Range<usize>, most: usize) -> impl Iterator<Item = Range<usize>> + use<> {
         let (mut next, end, across) = (tiles.start, tiles.end, self.across());

@@ -120,9 +120,9 @@ impl fmt::Display for RayKind {
 
 /// An event of a ray.
 ///
-/// A ray begins (`Begin`). Its search starts (`Search`), tests objects (`Tested`) and ends (`FirstHit`), or the ray is not
-/// followed (`Dropped`). Unless it is a shadow ray, its hit is followed by the surface (`Surface`), for each light by
-/// its shadow rays and then its outcome (`Light`), by the shaded colour (`Shaded`), and by the reflected and
+/// A ray begins (`Begin`). Its search starts (`Search`), tests objects (`Tested`) and ends (`FirstHit`), or the ray
+/// is not followed (`Dropped`). Unless it is a shadow ray, its hit is followed by the surface (`Surface`), for each
+/// light by its shadow rays and then its outcome (`Light`), by the shaded colour (`Shaded`), and by the reflected and
 /// transmitted rays. With or without a hit, the ray's colour comes last (`Colour`).
 #[derive(Clone, Copy)]
 pub enum Event<'e> {

@@ -1,4 +1,5 @@
-//! Progressive rendering: the whole image coarsely, then tile by tile with one ray for each pixel, then with all samples.
+//! Progressive rendering: the whole image coarsely, then tile by tile with one ray for each pixel, then with all
+//! samples.
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::parallel;

@@ -126,8 +126,8 @@ impl RayStats {
         }
     }
 
-    /// Returns the numbers of samples that pixels took, each with the number of these pixels; empty where all pixels take
-    /// the same number.
+    /// Returns the numbers of samples that pixels took, each with the number of these pixels; empty where all pixels
+    /// take the same number.
     pub fn sampled(&self) -> impl Iterator<Item = (u32, u64)> {
         let each = self.sampled.into_iter().zip(0..).map(|(pixels, power)| (1 << power, pixels));
         each.filter(|(_, pixels)| *pixels > 0)

@@ -47,8 +47,8 @@ pub trait Attribute: Sync {
 /// The part of a camera's pose that an attribute gives. With it, a page can move cameras of any type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pose {
-    /// The point where the viewer is. A camera without a [`Target`](Self::Target) looks through an image plane that stays
-    /// in its place when the viewer moves.
+    /// The point where the viewer is. A camera without a [`Target`](Self::Target) looks through an image plane that
+    /// stays in its place when the viewer moves.
     Position,
     /// The point at which the viewer looks.
     Target,

@@ -95,8 +95,8 @@ macro_rules! entity_types {
 
 impl Entity {
     entity_types! {
-        /// Describes a camera type. The attributes of every camera are added to its table: `pixeldim` before its own, and
-        /// those from `samples` on after them.
+        /// Describes a camera type. The attributes of every camera are added to its table: `pixeldim` before its own,
+        /// and those from `samples` on after them.
         camera: Camera(AnyCamera);
         /// Describes a material type.
         material: Material(Material);
@@ -291,8 +291,9 @@ impl Args {
         if self.is_pattern { None } else { self.setting.camera.planes_end_at() }
     }
 
-    /// Returns the sensor of a camera with this entity's attributes, and with an accuracy and rules of light that override
-    /// its own. With the notes' method the rules are the notes', too, unless the scene itself chooses both otherwise.
+    /// Returns the sensor of a camera with this entity's attributes, and with an accuracy and rules of light that
+    /// override its own. With the notes' method the rules are the notes', too, unless the scene itself chooses both
+    /// otherwise.
     pub fn sensor(&self, camera: AnyCamera, (accuracy, rules): (Option<Accuracy>, Option<Rules>)) -> Sensor {
         let is_classic = accuracy == Some(Accuracy::Classic);
         // The notes' command line has a default accuracy of its own.

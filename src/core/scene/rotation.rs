@@ -41,8 +41,8 @@ impl Type {
         if matches!(self, Self::Rotation) { "degrees" } else { "" }
     }
 
-    /// Returns the least and the greatest number that makes a difference, where there are such numbers: an angle and one
-    /// that differs from it by a full turn are the same.
+    /// Returns the least and the greatest number that makes a difference, where there are such numbers: an angle and
+    /// one that differs from it by a full turn are the same.
     pub fn period(self) -> Option<[f64; 2]> {
         matches!(self, Self::Rotation).then_some([-180.0, 180.0])
     }

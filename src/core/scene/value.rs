@@ -297,7 +297,8 @@ one_word!(
     Datum::Formula(formula) => Self::new(formula.clone())
 );
 
-/// A formula of a surface for each of red, green and blue, written as three formulas, or as one where the three are equal.
+/// A formula of a surface for each of red, green and blue, written as three formulas, or as one where the three are
+/// equal.
 impl Value for [SurfaceField; 3] {
     const TYPE: Type = Type::Formula(SURFACE);
     const ARITY: Counts = Counts::Of(&[1, 3]);

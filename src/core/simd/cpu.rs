@@ -101,12 +101,12 @@ impl fmt::Display for Cpu {
 /// }
 /// ```
 ///
-/// A function that a kernel calls is compiled for the level only where it is inlined, and where it is not, rays are taken
-/// one by one. In the release profile that is so for most of what the standard library does with a closure or an iterator,
-/// such as `map` of an array or `zip`; `docs/calls.sh` lists what kernels call. Vectors to be written are named
-/// after `=>` and are the kernel's last arguments. In the body, their arrays are arguments of their own, which tells
-/// the compiler that they do not overlap: otherwise it checks for overlap at every call, and takes small counts of rays
-/// one by one.
+/// A function that a kernel calls is compiled for the level only where it is inlined; elsewhere, rays are taken one
+/// by one. In the release profile, most functions of the standard library that take a closure or an iterator, such as
+/// `map` of an array or `zip`, are not inlined; `docs/calls.sh` lists what kernels call. Vectors to be written are
+/// named after `=>` and are the kernel's last arguments. In the body, their arrays are separate arguments, which
+/// tells the compiler that they do not overlap: otherwise it checks for overlap at every call, and takes small counts
+/// of rays one by one.
 #[macro_export]
 macro_rules! kernels {
     ($(

@@ -9,8 +9,8 @@ pub type AnyBackground = Box<dyn Background>;
 
 /// The colour of rays that hit nothing: primary, reflected and transmitted ones.
 ///
-/// Its light comes from infinitely far away, so it is not divided by the distance. With `lights yes` in a scene, it lights
-/// surfaces as well.
+/// Its light comes from infinitely far away, so it is not divided by the distance. With `lights yes` in a scene, it
+/// lights surfaces as well.
 pub trait Background: Send + Sync {
     /// Returns the colour in a direction, given by a unit vector. Every channel is finite and 0 or more.
     fn colour(&self, toward: DVec3) -> Rgb;

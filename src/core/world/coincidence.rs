@@ -29,8 +29,8 @@ pub(crate) const LEAST_COSINE: f64 = 1.0 / (1 << 26) as f64;
 /// 2^-18. `a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does` in `tests/shapes` tests it.
 pub(crate) const CLOSE: f64 = 1.0 / (1 << 30) as f64;
 
-/// Returns the difference up to which two distances along a ray may be equal up to rounding, in world units: [`CLOSE`] of
-/// the numbers that they are computed from.
+/// Returns the difference up to which two distances along a ray may be equal up to rounding, in world units:
+/// [`CLOSE`] of the numbers that they are computed from.
 #[inline(always)]
 pub(crate) fn close(ray: &Ray, distance: f64) -> f64 {
     let origin = ray.origin.abs();
@@ -41,9 +41,9 @@ pub(crate) fn close(ray: &Ray, distance: f64) -> f64 {
 /// coordinates: about 8000 times its unit of rounding, 2^-106. The test named at [`CLOSE`] checks it.
 pub(crate) const SAME: f64 = 1e-28;
 
-/// Returns a bound on how far the computed point of a hit is from the true one, in world units: the error along the ray
-/// is the error along the normal, divided by the cosine between them. `distance` is in world units; `max_coordinate` is
-/// that of the [facts](crate::world::hittable::Facts::max_coordinate).
+/// Returns a bound on the distance between the computed and the true point of a hit, in world units: the error along
+/// the ray is the error along the normal, divided by the cosine between them. `distance` is in world units;
+/// `max_coordinate` is that of the [facts](crate::world::hittable::Facts::max_coordinate).
 #[inline(always)]
 pub fn error(ray: &Ray, distance: f64, normal: DVec3, max_coordinate: f64) -> f64 {
     let origin = ray.origin.abs();
@@ -52,8 +52,9 @@ pub fn error(ray: &Ray, distance: f64, normal: DVec3, max_coordinate: f64) -> f6
 }
 
 /// Returns the bound that [`error`] gives for a hit point, or a larger one, in world units, from the cosine of the
-/// angle between the ray and the normal. `travelled` is the length of the whole path from the viewer, and `max_coordinate` is
-/// that of the shape and of the viewer together: no ray starts farther from the viewer than `travelled`.
+/// angle between the ray and the normal. `travelled` is the length of the whole path from the viewer, and
+/// `max_coordinate` is that of the shape and of the viewer together: no ray starts farther from the viewer than
+/// `travelled`.
 #[inline(always)]
 pub(crate) fn error_after(travelled: f64, max_coordinate: f64, cosine: f64) -> f64 {
     // A division in single precision takes a third of the time, and its relative error of 2^-24 or so does not matter

@@ -27,8 +27,8 @@ pub struct SurfaceHit {
 
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
-/// A plugin implements `distance`, `normal` and `facts`, and overrides other methods if it knows more than their defaults.
-/// Each default is correct for every shape.
+/// A plugin implements `distance`, `normal` and `facts`, and overrides other methods if it knows more than their
+/// defaults. Each default is correct for every shape.
 pub trait Hittable: Send + Sync {
     /// Returns the distance from the ray's origin to its first hit of the shape within the range, in world units, or
     /// [`MISS`](crate::geometry::ray::MISS).
@@ -77,8 +77,8 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Returns the index of the face on which a point of the surface lies, for shaders, from 0. `None` for a shape of one
-    /// face.
+    /// Returns the index of the face on which a point of the surface lies, for shaders, from 0. `None` for a shape of
+    /// one face.
     fn face(&self, _at: DVec3) -> Option<u32> {
         None
     }
@@ -89,7 +89,8 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Returns the index of the face that a ray hits at a distance in world units, from 0. `None` for a shape of one face.
+    /// Returns the index of the face that a ray hits at a distance in world units, from 0. `None` for a shape of one
+    /// face.
     fn face_hit(&self, ray: &Ray, distance: f64) -> Option<u32> {
         self.face(ray.at(distance))
     }
@@ -205,9 +206,9 @@ pub struct Facts {
     /// The largest magnitude of the shape's own coordinates that its hits are computed from, in world units. The ray's
     /// coordinates do not count.
     pub max_coordinate: f64,
-    /// The sides from which a ray that leaves the shape may hit it again. From other sides, the ray is not tested against
-    /// the shape. A ray that leaves a plane cannot hit it again, and a ray that leaves a sphere only from inside.
-    /// [`Sides::BOTH`] is correct for every shape whose [`distance`](Hittable::distance) respects
+    /// The sides from which a ray that leaves the shape may hit it again. From other sides, the ray is not tested
+    /// against the shape. A ray that leaves a plane cannot hit it again, and a ray that leaves a sphere only from
+    /// inside. [`Sides::BOTH`] is correct for every shape whose [`distance`](Hittable::distance) respects
     /// `range.origin_side`.
     pub can_hit_itself: Sides,
     /// Whether both sides of the surface are lit. If so, the normal is flipped to face the ray. A plane is lit on one
@@ -216,9 +217,9 @@ pub struct Facts {
     /// Whether [`shading_normal`](Hittable::shading_normal) differs from the surface's own normal
     /// anywhere.
     pub is_smooth: bool,
-    /// A point and the unit normal of the plane that contains the whole shape, if there is one: rays that leave the shape
-    /// stay on their side of the plane, it is shaded with the plane's normal, and a light behind the plane does not light
-    /// it. `None` is always correct.
+    /// A point and the unit normal of the plane that contains the whole shape, if there is one: rays that leave the
+    /// shape stay on their side of the plane, it is shaded with the plane's normal, and a light behind the plane does
+    /// not light it. `None` is always correct.
     pub plane: Option<[DVec3; 2]>,
     /// Whether the shape ends where the camera cuts off planes
     /// ([`planes_end_at`](crate::world::camera::Camera::planes_end_at)). Its copies end at the same z of the world.

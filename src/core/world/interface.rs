@@ -16,8 +16,8 @@ pub trait Interface: Send + Sync {
     /// normal that faces it: `dir.dot(normal)` is at most 0.
     fn cross(&self, dir: DVec3, normal: DVec3, side: Side) -> Crossing;
 
-    /// Tells whether any light may be neither reflected nor transmitted: [`Crossing::onward`] is `None` although less than
-    /// all is reflected. `true` is always correct.
+    /// Tells whether any light may be neither reflected nor transmitted: [`Crossing::onward`] is `None` although less
+    /// than all is reflected. `true` is always correct.
     fn absorbs(&self) -> bool {
         true
     }
@@ -64,8 +64,8 @@ pub struct Medium {
 }
 
 impl Medium {
-    /// Makes a medium that leaves these fractions of light, more than 0 and at most 1, after the length `at`, in world units;
-    /// `None` if it leaves all.
+    /// Makes a medium that leaves these fractions of light, more than 0 and at most 1, after the length `at`, in
+    /// world units; `None` if it leaves all.
     pub fn new(left: DVec3, at: f64) -> Option<Self> {
         (left != DVec3::ONE).then(|| Self { left, logarithms: left.map(libm::log), at })
     }

@@ -35,8 +35,8 @@ pub struct Patch {
     pub sides: [DVec3; 2],
     /// The width that a pixel shows, in widths of the patch.
     pub pixel: f64,
-    /// The least and the greatest u and v; `None` where the shape has none, or the shader does not see them. They may lie
-    /// beyond the ends of the surface.
+    /// The least and the greatest u and v; `None` where the shape has none, or the shader does not see them. They may
+    /// lie beyond the ends of the surface.
     pub uv: Option<[DVec2; 2]>,
 }
 

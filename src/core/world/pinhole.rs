@@ -18,8 +18,8 @@ const MAX_Z: f64 = 0.01;
 pub struct Pinhole {
     /// The image plane's width and height in world units.
     pub screen: DVec2,
-    /// The viewer's position in world coordinates, off the image plane z = 0: in front of it, where z > 0, the viewer looks
-    /// along -z, and behind it along +z.
+    /// The viewer's position in world coordinates, off the image plane z = 0: in front of it, where z > 0, the viewer
+    /// looks along -z, and behind it along +z.
     pub viewpoint: DVec3,
 }
 

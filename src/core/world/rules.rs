@@ -41,8 +41,8 @@ impl Rules {
         }
     }
 
-    /// Returns the factor of the light that a lamp sends to a point, from the cosine of the angle at which it arrives and
-    /// the reciprocal of the lamp's distance.
+    /// Returns the factor of the light that a lamp sends to a point, from the cosine of the angle at which it arrives
+    /// and the reciprocal of the lamp's distance.
     #[inline(always)]
     pub fn received<N: Scalar>(self, cosine: N, inverse_distance: N) -> N {
         match self {

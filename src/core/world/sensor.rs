@@ -123,8 +123,9 @@ impl Sensor {
         (y * self.pixels[0] as i64 + x) as u32 ^ self.scramble
     }
 
-    /// Returns the image positions of the first `count` of a pixel's primary rays, in pixels as [`ray`](Self::ray) takes
-    /// them, each with its random numbers. If all pixels have a single ray, it goes through the centre and needs none.
+    /// Returns the image positions of the first `count` of a pixel's primary rays, in pixels as [`ray`](Self::ray)
+    /// takes them, each with its random numbers. If all pixels have a single ray, it goes through the centre and
+    /// needs none.
     pub fn places(
         &self,
         x: usize,
@@ -171,7 +172,8 @@ impl Sensor {
         }
     }
 
-    /// Lists the sample of one index of each pixel, given by column and row, and writes the image positions of their rays.
+    /// Lists the sample of one index of each pixel, given by column and row, and writes the image positions of their
+    /// rays.
     pub(crate) fn scatter_each(
         &self,
         cpu: Cpu,

@@ -14,8 +14,8 @@ use tabray_exact::scalar::{Scalar, per_axis};
 pub struct Anchor {
     /// The point of the plane or the centre of the sphere, in world units; of other objects, the middle of their box.
     pub origin: DVec3,
-    /// The length that counts as 1, in world units: 1 on a plane, the diameter of a sphere; of other objects, the longest
-    /// side of their box.
+    /// The length that counts as 1, in world units: 1 on a plane, the diameter of a sphere; of other objects, the
+    /// longest side of their box.
     pub unit: f64,
 }
 

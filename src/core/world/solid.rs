@@ -134,8 +134,8 @@ impl Tree {
         Some((path, is_outer != (operation == Operation::Difference && index > 0)))
     }
 
-    /// Tells whether a point on the surface of the part at the end of a [path](Self::path_to) lies on the surface of the
-    /// solid; `None` where that is undecided. `inside` tells whether the point lies in another part.
+    /// Tells whether a point on the surface of the part at the end of a [path](Self::path_to) lies on the surface of
+    /// the solid; `None` where that is undecided. `inside` tells whether the point lies in another part.
     pub(crate) fn is_on_solid(
         &self,
         path: &[usize],

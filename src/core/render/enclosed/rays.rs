@@ -297,7 +297,8 @@ impl<'s> EnclosingTracer<'s> {
         self.over_path(ray, Interval::point(hit.low()).coarse().low, most)
     }
 
-    /// Bounds the magnitude of light, given a bound on it as [`Rules::over_path`] takes it, where rays hit nothing before t.
+    /// Bounds the magnitude of light where rays hit nothing before t. `most` is a bound on the light, as
+    /// [`Rules::over_path`] takes it.
     fn over_path<N: Number>(&self, ray: &Ray<N>, t: f64, most: f64) -> f64 {
         if most == 0.0 {
             return self.behind();

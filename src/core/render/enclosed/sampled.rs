@@ -198,7 +198,8 @@ impl<N: Number> Round<N> {
     }
 }
 
-/// Encloses the point of a ball that [`Ball::sample`] chooses for two numbers from 0 to 1, as points outside of it see it.
+/// Encloses the point of a ball that [`Ball::sample`] chooses for two numbers from 0 to 1, as points outside of it
+/// see it.
 fn on_ball<N: Number>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<N>> {
     let (half, radius) = (N::constant(0.5), N::constant(ball.radius));
     let Round { middle, distance, light: [_, light], .. } = Round::seen(&Extent::Ball(*ball), at)?;
@@ -245,14 +246,16 @@ fn in_sky<N: Number>(
     Some(Some(Points { toward, are_far: true, light }))
 }
 
-/// Encloses the unit vector that [`emitter::by_cosine`](crate::world::emitter::by_cosine) chooses for two numbers from 0 to 1.
+/// Encloses the unit vector that [`emitter::by_cosine`](crate::world::emitter::by_cosine) chooses for two numbers
+/// from 0 to 1.
 fn by_cosine<N: Number>(normal: [N; 3], numbers: DVec2) -> Option<[N; 3]> {
     let place = in_disc(numbers);
     let [x, y] = place;
     around(normal, place, (N::constant(1.0) - x * x - y * y).sqrt())
 }
 
-/// Encloses the unit vector that [`emitter::in_cone`](crate::world::emitter::in_cone) chooses for two numbers from 0 to 1.
+/// Encloses the unit vector that [`emitter::in_cone`](crate::world::emitter::in_cone) chooses for two numbers from 0
+/// to 1.
 fn in_cone<N: Number>(axis: [N; 3], height: N, numbers: DVec2) -> Option<[N; 3]> {
     let place: [N; 2] = in_disc(numbers);
     let [x, y] = place;

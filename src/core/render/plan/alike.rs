@@ -18,8 +18,8 @@ pub(crate) struct Alike {
 }
 
 impl Alike {
-    /// Finds the objects that look the same: of one material and one shader, on which all points reflect the same light,
-    /// and none of it as a mirror. `None` where there are none.
+    /// Finds the objects that look the same: of one material and one shader, on which all points reflect the same
+    /// light, and none of it as a mirror. `None` where there are none.
     pub fn of(model: &Model) -> Option<Self> {
         if model.camera.value.accuracy == Accuracy::Classic {
             return None;

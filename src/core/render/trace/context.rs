@@ -76,8 +76,8 @@ pub struct Scratch {
     pub(super) primary: Option<Box<PrimaryScratch>>,
     /// The image positions of the current primary rays, x and y in pixels.
     pub(super) places: [Vec<f64>; 2],
-    /// The points of the camera's lens through which the current primary rays go, x and y in its radius; empty where all
-    /// go through its centre.
+    /// The points of the camera's lens through which the current primary rays go, x and y in its radius; empty where
+    /// all go through its centre.
     pub(super) lens: [Vec<f64>; 2],
     /// The samples of the current primary rays, where pixels have more than one.
     pub(super) samples: Samples,

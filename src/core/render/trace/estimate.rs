@@ -203,7 +203,8 @@ impl Estimate {
         self.goal = goal;
     }
 
-    /// Returns the binary logarithm of the number of samples in each block, for a number of samples that is a power of two.
+    /// Returns the binary logarithm of the number of samples in each block, for a number of samples that is a power
+    /// of 2.
     #[inline]
     fn shift(&self, samples: u32) -> u32 {
         samples.trailing_zeros().saturating_sub(self.most_blocks.trailing_zeros())
@@ -219,7 +220,8 @@ impl Estimate {
     /// error of the mean, estimated from the means of its blocks, plus the error that the contrast around leaves open.
     /// `doubt` is the factor of the standard error.
     ///
-    /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
+    /// Sobol points are spread more evenly than independent ones, so differences of blocks tend to overstate the
+    /// error.
     #[inline]
     fn error(&self, display: &Display, doubt: f64) -> f64 {
         let blocks = (self.count as usize).min(self.most_blocks);

@@ -120,7 +120,8 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
         }
     }
 
-    /// Returns the index of the object that the rays leave, and the sides that they leave; `None` where they leave several.
+    /// Returns the index of the object that the rays leave, and the sides that they leave; `None` where they leave
+    /// several.
     fn left(&self) -> Option<(usize, &[Side])> {
         let ShadowRays { surface, sides, .. } = self.shadow_rays;
         surface.objects.is_empty().then_some((surface.index, *sides))

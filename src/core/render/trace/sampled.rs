@@ -2,8 +2,8 @@
 //!
 //! A pixel is then off by an unknown amount as soon as one of its samples uses up its ray budget, whatever the others
 //! return. So the samples after it get a small part of the budget, and the pixel costs about as much as a pixel with
-//! a single sample. Where the number of samples depends on the pixel, it takes only the first number. The budget of a
-//! sample depends on the samples before it, so these are traced first.
+//! a single sample. If pixels differ in their numbers of samples, such a pixel takes only the first number. The
+//! budget of a sample depends on the samples before it, so these are traced first.
 
 use super::context::{PrimaryScratch, Scratch, Tracer};
 use crate::geometry::ray_packet::PACKET_SIZE;

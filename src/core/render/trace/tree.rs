@@ -13,9 +13,9 @@
 //! tree alone, and the results of a round are added in the order in which its rays were given, so no colour depends
 //! on the packet.
 //!
-//! The notes' rules have other ends, which the [depth](crate::render::plan::depth) describes. There each branch has
-//! an allowance of its own, fixed by its path, and is followed as soon as it is met, so the course's pictures stay as
-//! they are.
+//! Under the notes' rules, branches end as the [depth](crate::render::plan::depth) describes. There each branch has
+//! an allowance of its own, fixed by its path, and is followed as soon as it is met, so the course's pictures do not
+//! change.
 
 use crate::geometry::ray::Side;
 use crate::render::limits::{LEAST_PART, MAX_RAYS, MAX_TREE};

@@ -46,8 +46,8 @@ pub trait HitProofs<F: Float> {
         Some(normal)
     }
 
-    /// Encloses the coordinates u and v of the points of a part in a box in world coordinates; `None` where they are not
-    /// known.
+    /// Encloses the coordinates u and v of the points of a part in a box in world coordinates; `None` where they are
+    /// not known.
     fn uv_bounds(&self, _at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
         None
     }

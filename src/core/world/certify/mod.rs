@@ -124,8 +124,8 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
     }
 }
 
-/// Returns what a bounding box says about a line's first hit of a shape without an equation: nothing nearer than the box,
-/// and nothing where the line misses it. The box is rounded, and so widened a little.
+/// Returns what a bounding box says about a line's first hit of a shape without an equation: nothing nearer than the
+/// box, and nothing where the line misses it. The box is rounded, and so widened a little.
 pub(crate) fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEnclosure<f64> {
     let Some(Aabb { low, high }) = bounds else { return HitEnclosure::Doubtful(0.0) };
     let slack = SLACK * low.abs().max(high.abs()).max_element();

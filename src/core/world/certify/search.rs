@@ -8,9 +8,9 @@ use tabray_exact::interval::{Float, Interval};
 use tabray_exact::jet::Jet;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
-/// an ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of exponential
-/// functions take a long time.
+/// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of an
+/// ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of
+/// exponential functions take a long time.
 const JUMP: f64 = f64::EPSILON / 16.0;
 
 /// The number of pieces after which a search is given up if the shape is smaller than the rounding of the line.

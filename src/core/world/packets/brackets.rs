@@ -39,8 +39,8 @@ pub(crate) fn occluded_by_brackets(
     })
 }
 
-/// Calls a function with arrays for the brackets of `count` rays: no longer than they need to be, as clearing them takes
-/// time.
+/// Calls a function with arrays for the brackets of `count` rays: no longer than they need to be, as clearing them
+/// takes time.
 #[inline(always)]
 fn with_brackets(count: usize, call: impl FnOnce(&mut [f64], &mut [f64]) -> bool) -> bool {
     if count <= LANES {

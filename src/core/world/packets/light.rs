@@ -104,8 +104,8 @@ kernels! {
     }
 }
 
-/// Samples a light from many points. `place` returns the point of the light that a lane sees, and `received` the factor of
-/// the light from the cosine of its angle and the reciprocal of its distance.
+/// Samples a light from many points. `place` returns the point of the light that a lane sees, and `received` the
+/// factor of the light from the cosine of its angle and the reciprocal of its distance.
 #[inline(always)]
 fn sample_each<T: Light>(
     light: &T,

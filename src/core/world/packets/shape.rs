@@ -34,8 +34,8 @@ where
 
 /// A shape against which packets of rays are tested.
 pub trait PacketIntersect: Send + Sync {
-    /// Computes brackets of the first hits, before `ends`, of all rays that each ray of a packet stands for. Hits beyond an
-    /// end may be left out.
+    /// Computes brackets of the first hits, before `ends`, of all rays that each ray of a packet stands for. Hits
+    /// beyond an end may be left out.
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], brackets: (&mut [f64], &mut [f64]));
 
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of

@@ -1,4 +1,4 @@
-//! How deep rays are followed into mirrors and glass: an upper bound on what a branch can still add to a pixel.
+//! The depth of rays in mirrors and glass: an upper bound on what a branch can still add to a pixel.
 //!
 //! **What a ray returns.** A ray that hits object `j` at a path length `d` from the viewer returns
 //!
@@ -15,21 +15,21 @@
 //! ```
 //!
 //! Each letter is the largest magnitude of any channel at any point: `T` of the tint, `s` of the specular colour, and
-//! `S` of ambient plus, for each light, emissivity times (diffuse divided by the least distance of the object from the
-//! light, plus specular if there are highlights). Cosines, their powers, and the fraction of a light that passes
-//! through glass are at most 1. Rays do not hit what lies behind the plane that they leave, nor the object that they
+//! `S` of ambient plus, for each light, emissivity times (diffuse divided by the least distance of the object from
+//! the light, plus specular if there are highlights). Cosines, their powers, and the fraction of a light that passes
+//! through glass are at most 1. Rays do not hit objects behind the plane that they leave, or the object that they
 //! leave if it cannot be hit again.
 //!
 //! **Interfaces.** Where the material has an interface, which divides each channel of light into a reflected fraction
-//! `r` and the rest, the sum is `kept * S / d + (1 - r) * tint * transmitted light + r * reflected light`, so that
+//! `r` and the rest, the sum is `kept * S / d + (1 - r) * tint * transmitted light + r * reflected light`. So
 //!
 //! ```text
 //! beyond(i, side) >= kept_j * S_j + max(T_j * beyond(j, other side), beyond(j, same side))
 //! ```
 //!
-//! and so for `P`, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray gets a quarter of the
-//! allowance, and the transmitted one the rest, or one of them gets all where the other does not exist. The weight of
-//! the reflected branch is the largest `r` of a channel, rounded up to a power of two.
+//! The same holds for `P` below, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray gets a
+//! quarter of the allowance, and the transmitted one the rest, or one of them gets all where the other does not
+//! exist. The weight of the reflected branch is the largest `r` of a channel, rounded up to a power of two.
 //!
 //! The background counts as an object around everything, whose own light `S` is its brightest channel times
 //! [`MAX_DIST`]: it is not divided by the path length `d`, but no ray leaves an object where `d` is more than that.

@@ -11,7 +11,7 @@
 //! ([`is_clear_of`](crate::world::light::Light::is_clear_of)), or the product of its colour and the object's
 //! reflectivities is black. The plan also leaves out lights that a closed object hides from all visible points.
 //!
-//! **Objects.** An object is left out where it is clear of all views, and of all paths from what is seen to a light
+//! **Objects.** An object is left out where it is clear of all views, and of all paths from visible points to a light
 //! that is needed. No ray could meet an object that is left out, so the image stays the same to the byte. All tests
 //! have margins far above the rounding errors of rays.
 //!
