@@ -174,7 +174,8 @@ mod tests {
     use tabray_lang::reader;
     use tabray_lang::registry::Registry;
 
-    /// A floor, a wall with a mirror, spheres, a cone and a torus, a pane of glass, two lights, one of them with a size.
+    /// A floor, a wall with a mirror, spheres, a cone and a torus, a pane of glass, two lights, one of them with a
+    /// size.
     const SCENE: &str = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 8 }
         material paper { ambient 0.4 0.4 0.3 diffuse 3 3 3 }
         material shiny { ambient 0.1 0.2 0.3 diffuse 2 1 1 specular 0.4 shininess 30 }

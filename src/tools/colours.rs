@@ -346,8 +346,8 @@ mod tests {
 
     #[test]
     fn a_wall_behind_a_rim_that_is_missed_is_seen() {
-        // The ball is cut one part in 2^53 before its nearest point, which intervals in `f64` do not tell. Its inner wall
-        // is 9 away; the screen behind it is as bright as the rim would be, at 7.
+        // The ball is cut one part in 2^53 before its nearest point, which intervals in `f64` do not tell. Its inner
+        // wall is 9 away; the screen behind it is as bright as the rim would be, at 7.
         let model = model(
             "material pale { ambient 6 6 6 } material bright { ambient 12 12 12 }
              quadric cut { material pale coefficients 1 1 1 0 0 0 0 0 0 1 center 4 3 -3

@@ -302,8 +302,8 @@ impl Reader {
     }
 }
 
-/// Copies the pixels of a tile from an image, or from some rows of it, to the bytes of a part. `row` is the length of the
-/// image's rows in bytes, and the columns and rows count from its upper left.
+/// Copies the pixels of a tile from an image, or from some rows of it, to the bytes of a part. `row` is the length of
+/// the image's rows in bytes, and the columns and rows count from its upper left.
 pub fn take_tile(
     image: &[u8],
     row: usize,

@@ -16,8 +16,8 @@ pub enum Verdict {
     /// two surfaces coincide. The tracer finds one of the objects in question.
     #[default]
     Tie,
-    /// A shape without an equation may be hit first, since the ray meets its bounds before any proven hit. The tracer finds
-    /// one of the objects in question.
+    /// A shape without an equation may be hit first, since the ray meets its bounds before any proven hit. The tracer
+    /// finds one of the objects in question.
     Uncertified,
     /// The tracer finds another object.
     Contradicted,

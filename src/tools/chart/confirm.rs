@@ -28,8 +28,8 @@ const GAIN: f64 = 0.8;
 const AT_ONCE: usize = 4096;
 const AGAIN: f64 = 0.5;
 
-/// The numbers of samples of each of the two images that count as right, the part of the greatest mean square that their
-/// noise may add to a bound, and the pixels after which a mean that is too large ends a measurement.
+/// The numbers of samples of each of the two images that count as right, the part of the greatest mean square that
+/// their noise may add to a bound, and the pixels after which a mean that is too large ends a measurement.
 const RIGHT: [u32; 4] = [4, 8, 16, 32];
 const NOISE: f64 = 0.1;
 const HOPELESS: usize = 16_384;

@@ -36,8 +36,8 @@ pub struct Estimate {
     pub samples: u32,
     /// The greatest number of samples, where pixels take different ones.
     pub most: Option<u32>,
-    /// The mean number of rays from the viewer for a pixel: its samples, and where pixels take different numbers, its part
-    /// of the probes that decide on them.
+    /// The mean number of rays from the viewer for a pixel: its samples, and where pixels take different numbers, its
+    /// part of the probes that decide on them.
     pub rays: f64,
     /// The cost of the render of the whole image.
     pub cost: Cost,

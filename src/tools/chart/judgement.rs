@@ -1,9 +1,9 @@
 //! Judges found hits by the roots of the true ray and their conditioning.
 //!
-//! A distance alone says little: on a plane that a ray nearly runs along, rounding the ray's direction moves the hit by
-//! thousands of units, and at a silhouette two hits are closer together than a coarse method's error. So a hit counts as
-//! the first one if the ray stays on the surface, up to rounding, from the true hit to the found one, and as a later one
-//! only if another root lies between.
+//! A distance alone says little: on a plane that a ray nearly runs along, rounding the ray's direction moves the hit
+//! by thousands of units, and at a silhouette two hits are closer together than a coarse method's error. So a hit
+//! counts as the first one if the ray stays on the surface, up to rounding, from the true hit to the found one, and
+//! as a later one only if another root lies between.
 
 use f256::f256;
 use glam::DVec3;
@@ -50,7 +50,8 @@ pub(super) enum Judgement {
     Invented,
     /// A hit at or beyond another root than the first.
     Later,
-    /// A hit that is farther from the first root than the conditioning of the root explains; no other root lies between.
+    /// A hit that is farther from the first root than the conditioning of the root explains; no other root lies
+    /// between.
     Inaccurate,
     /// The proof did not decide, or rounding the ray's numbers decides.
     Undecided,
@@ -88,8 +89,8 @@ impl Pair<'_> {
         if matches!(judged, Judgement::Right(_) | Judgement::Undecided) {
             return judged;
         }
-        // Where the method is right about the rounded ray, which it was given, or about one within rounding of it, rounding
-        // decides what is hit.
+        // If the method is right about the given, rounded ray, or about one within rounding of it, rounding decides
+        // the hit.
         let error = self.rounding(match known.truth {
             Truth::Hit { distance, .. } => distance.high,
             Truth::Miss | Truth::Undecided => 0.0,
@@ -157,8 +158,8 @@ impl Pair<'_> {
 
     /// Returns the next root after a proven one, in world units; `None` where there is none.
     fn root_after(&self, at: &Wide) -> Option<Root> {
-        /// The gap between a root and where the search for the next one starts, as a fraction of the distance: nearer roots
-        /// are the same in `f64`.
+        /// The gap between a root and the start of the search for the next one, as a fraction of the distance: nearer
+        /// roots are the same in `f64`.
         const GAP: f64 = 4.0 * f64::EPSILON;
         let start = Interval::constant(at.high.to_f64() * (1.0 + GAP));
         let line = self.sight.line::<Wide>();

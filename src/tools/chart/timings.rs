@@ -21,7 +21,8 @@ use tabray_core::world::sample::Sampler;
 const COMPARED: [u32; 2] = [1, 4];
 const GROUPS: usize = 5;
 
-/// The greatest part of the time of the scene's own accuracy that another accuracy may take, in each group, to be a choice.
+/// The maximum part of the time of the scene's own accuracy that another accuracy takes, in each group, to be a
+/// choice.
 const GAIN: f64 = 0.8;
 
 /// The cost of the render of an image.
@@ -114,7 +115,8 @@ impl Timings {
     }
 }
 
-/// Tells for each of several accuracies whether it is clearly faster than the scene's own, by packets at the same places.
+/// Tells for each of several accuracies whether it is clearly faster than the scene's own, by packets at the same
+/// places.
 pub(super) fn gains(own: &Model, others: &[&Model], threads: &Renderer) -> Vec<bool> {
     let compared = |model: &&Model| {
         let mut plan = plan(model);

@@ -301,7 +301,8 @@ mod tests {
     use super::*;
     use crate::chart::{Times, WrongHits};
 
-    /// The numbers of a choice: its time in microseconds, its error, its wrong hits of 100, and its changed pixels of 100.
+    /// The numbers of a choice: its time in microseconds, its error, its wrong hits of 100, and its changed pixels of
+    /// 100.
     fn point(name: &str, family: Family, (time, error): (f64, f64), missed: usize, changed: usize) -> Point {
         Point {
             name: name.to_owned(),

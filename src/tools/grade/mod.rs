@@ -37,8 +37,8 @@ pub struct Grade {
 }
 
 impl Grade {
-    /// Compares a picture with the image of a scene, whose size it has. Differences of up to `tolerance` levels are none.
-    /// `make` makes the scene's model again, each time to be changed.
+    /// Compares a picture with the image of a scene, whose size it has. Differences of up to `tolerance` levels are
+    /// none. `make` makes the scene's model again, each time to be changed.
     ///
     /// # Errors
     /// Returns the errors of `make`.

@@ -16,7 +16,7 @@ use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::query::{Answer, Crossing, ExactRay, Query, Surroundings};
 use tabray_core::render::Renderer;
 
-/// The number of rays that are answered before any of their answers is written: enough for all threads, and little memory.
+/// The number of rays that are answered before any answer is written: enough for all threads, and little memory.
 const TOGETHER: usize = 64 * PACKET_SIZE;
 
 /// The maximum number of bad rays that are reported.

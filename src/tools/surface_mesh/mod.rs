@@ -3,10 +3,10 @@
 //!
 //! The object answers one question: whether a cube lies inside of it, outside, or neither for certain. A cube around
 //! the object is halved along each axis until cells that the surface may cross are small. Their corners are inside or
-//! outside, and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell). The triangles
-//! that separate corners inside from corners outside in each are closed and two-manifold, whatever the corners are.
-//! Their vertices are moved along the cells' edges onto the surface. Proofs about the result hold however it was
-//! made. Where they fail, cells are halved again, until they are smaller than the error.
+//! outside, and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell). In each of
+//! them, triangles separate the corners inside from those outside. Whatever the corners are, these triangles form
+//! closed two-manifolds. Their vertices are moved along the cells' edges onto the surface. Proofs about the result
+//! hold however it was made. Where they fail, cells are halved again, until they are smaller than the error.
 
 mod body;
 mod cells;
