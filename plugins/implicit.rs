@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use tabray::prelude::*;
 use tabray::shapes::Clip;
-use tabray::shapes::field::{self, Reduced};
+use tabray::shapes::field::{self, Reduced, Regularity};
 
 static FORMULA: Pparm<Field> = Pparm::required(
     "formula",
@@ -115,10 +115,14 @@ impl Surface {
             Some("its formula divides by what may be 0 or less in its box")
         } else if !self.is_clipped && !field::is_outside(&self.formula, self.corners) {
             Some("its box may cut its surface")
-        } else if !field::is_regular(&self.formula, self.corners) {
-            Some("its formula may jump where it would have to be 0")
         } else {
-            None
+            match field::regularity(&self.formula, self.corners) {
+                Regularity::Bounded => None,
+                Regularity::MayJump => Some("its formula may jump where it would have to be 0"),
+                Regularity::TooCostly => {
+                    Some("its formula has too many operations to check that it does not jump")
+                }
+            }
         }
     }
 }

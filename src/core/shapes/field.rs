@@ -62,32 +62,46 @@ pub fn reduced(field: Field) -> Reduced {
 /// A part of the box, and the number of halvings that produced it.
 type Part = ([DVec3; 2], u32);
 
-/// Tells whether a formula and its slope are certainly bounded on the formula's surface in a box.
-pub fn is_regular(field: &Field, corners: [DVec3; 2]) -> bool {
-    let mut left = MOST_OPERATIONS;
+/// Whether a formula and its slope are bounded on its surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regularity {
+    /// Both are certainly bounded.
+    Bounded,
+    /// One of them may be unbounded in a part of the box as small as a point.
+    MayJump,
+    /// The answer takes too many operations.
+    TooCostly,
+}
+
+/// Tells whether a formula and its slope are bounded on the formula's surface in a box.
+pub fn regularity(field: &Field, corners: [DVec3; 2]) -> Regularity {
+    regularity_within(field, corners, MOST_OPERATIONS)
+}
+
+fn regularity_within(field: &Field, corners: [DVec3; 2], mut operations: u64) -> Regularity {
     let mut waiting: Vec<Part> = vec![(corners, 0)];
     while let Some(part) = waiting.pop() {
         let ([low, high], halvings) = part;
         let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         let cost = field.cost(at).max(1);
-        let Some(after) = left.checked_sub(cost) else { return false };
-        left = after;
+        let Some(left) = operations.checked_sub(cost) else { return Regularity::TooCostly };
+        operations = left;
         let value = field.at(at);
         if !value.has_zero() {
             continue;
         }
         // A slope along each axis takes several times as long as the value.
-        let Some(after) = left.checked_sub(15 * cost) else { return false };
-        left = after;
-        let is_regular = value.is_bounded() && (0..3).all(|axis| slope(field, at, axis).is_bounded());
-        if !is_regular {
+        let Some(left) = operations.checked_sub(15 * cost) else { return Regularity::TooCostly };
+        operations = left;
+        let is_bounded = value.is_bounded() && (0..3).all(|axis| slope(field, at, axis).is_bounded());
+        if !is_bounded {
             if halvings == HALVINGS {
-                return false;
+                return Regularity::MayJump;
             }
             waiting.extend(halves(part));
         }
     }
-    true
+    Regularity::Bounded
 }
 
 /// Returns the number of parts to examine for a change of sign, fewer for a formula of thousands of operations.
@@ -179,4 +193,23 @@ fn halves(([low, high], halvings): Part) -> [Part; 2] {
     let (mut below, mut above) = (high, low);
     (below[axis], above[axis]) = (middle, middle);
     [([low, below], halvings + 1), ([above, high], halvings + 1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use tabray_exact::formula::Formula;
+
+    #[test]
+    fn a_check_that_is_given_up_is_no_jump() {
+        let check = |text: &str, operations: u64| {
+            let formula = Formula::parse_in(text, Field::VARIABLES).expect("a formula");
+            let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
+            regularity_within(&field, [DVec3::splat(-2.0), DVec3::splat(2.0)], operations)
+        };
+        assert_eq!(check("x^2 + y^2 + z^2 - 1", MOST_OPERATIONS), Regularity::Bounded);
+        assert_eq!(check("y - floor(x) - 0.5*z", MOST_OPERATIONS), Regularity::MayJump);
+        assert_eq!(check("y - floor(x) - 0.5*z", 10), Regularity::TooCostly);
+    }
 }
