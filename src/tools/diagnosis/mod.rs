@@ -41,6 +41,10 @@ const NAMED: usize = 3;
 /// The number of reflections and transmissions of the rays with which an image is tried.
 const BOUNCES: usize = 4;
 
+/// The maximum number of pixels that are tried with all reflections and transmissions, if the image is black with fewer.
+/// Between mirrors, such a pixel may take thousands of rays.
+const MAX_DEEP: usize = 80;
+
 /// Something about an image that its author hardly meant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
@@ -63,7 +67,8 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
             return flat(plan.model);
         }
         // The plan of a picture leaves out lights.
-        let plan = Plan::new(plan.model);
+        let mut plan = Plan::new(plan.model);
+        plan.bounces = BOUNCES;
         let survey = Survey::of(&plan, &places);
         if is_black { Some(black(&plan, &survey, levels.brightest)) } else { burnt(&plan, &survey, levels) }
     })
@@ -106,18 +111,20 @@ fn tried_here(model: &Model) -> Option<Remark> {
     plan.set_adaptive(None);
     plan.camera.samples = 1;
     let places = places(&plan.camera, part);
-    let levels = |plan: &Plan| {
+    let levels = |plan: &Plan, places: &[[usize; 2]]| {
         let (mut scratch, mut nobody, mut levels) = (Scratch::default(), Flaws::default(), Levels::default());
         let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
-        let (colours, display) = (tracer.pixels(&places), plan.camera.display());
+        let (colours, display) = (tracer.pixels(places), plan.camera.display());
         (0..places.len()).for_each(|index| levels.add(&display.bytes(colours.get(index))));
         levels
     };
     plan.bounces = BOUNCES;
-    let mut found = levels(&plan);
+    let mut found = levels(&plan, &places);
     plan.bounces = usize::MAX;
     if found.brightest < DARK && plan.depth.is_some() {
-        found = levels(&plan);
+        let step = places.len().div_ceil(MAX_DEEP).max(1);
+        let few: Vec<_> = places.iter().skip(step / 2).step_by(step).copied().collect();
+        found = levels(&plan, &few);
     }
     remark(&plan, part, &found)
 }
