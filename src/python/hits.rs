@@ -7,10 +7,12 @@ use numpy::ndarray::{Array2, ArrayView1};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::collections::BTreeSet;
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
-use tabray_core::query::{Answer, ExactRay, Query, Surroundings, Verdict};
+use tabray_core::query::{Answer, Crossing, ExactRay, Query, Surroundings};
 use tabray_core::scene::model::Model;
+use tabray_core::text;
 use tabray_core::world::certify::Precision;
 use tabray_tools::hits::answers::code;
 
@@ -88,36 +90,30 @@ impl RayView<'_> {
     }
 }
 
-/// The answer to one ray, with the surface at its hit.
-type Told = (Answer, Option<Surroundings>);
-
-/// Answers all rays, some at a time, and passes the answers on in the order of the rays. Each answer depends on its
-/// ray alone.
-fn answer(
+/// Passes the results of `packet` for all packets of rays to `sink`, in the order of the rays. `packet` takes the index
+/// of the packet's first ray, the rays, and the t at which each ray ends.
+fn in_packets<T: Send>(
     course: &Course,
-    query: &Query,
     rays: &RayView,
-    asked: Asked,
-    told: &(dyn Fn(&Query, &ExactRay, Answer, f64) -> Told + Sync),
-    sink: &mut dyn FnMut(Told),
+    size: usize,
+    packet: impl Fn(usize, &[ExactRay], &[f64]) -> Vec<T> + Sync,
+    mut sink: impl FnMut(T),
 ) -> Result<(), String> {
-    let size = if asked.tight { TIGHT } else { PACKET_SIZE };
-    let packet = |first: usize| -> Result<Vec<Told>, String> {
+    let answered = |first: usize| -> Result<Vec<T>, String> {
         if course.stops() {
             return Ok(Vec::new());
         }
         let range = first..rays.count.min(first + size);
         let (of, ends): (Vec<_>, Vec<_>) =
             range.clone().map(|index| rays.ray(index)).collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
-        let answers = if asked.fast { query.traced(&of) } else { query.proven(&of, asked.tight) };
+        let answers = packet(first, &of, &ends);
         course.step(range.len());
-        let answers = of.iter().zip(answers).zip(ends);
-        Ok(answers.map(|((ray, answer), end)| told(query, ray, answer, end)).collect())
+        Ok(answers)
     };
     for first in (0..rays.count).step_by(TOGETHER * size) {
         let packets = (rays.count - first).div_ceil(size).min(TOGETHER);
-        for answers in parallel::map(packets, |index| packet(first + index * size)) {
-            answers?.into_iter().for_each(&mut *sink);
+        for answers in parallel::map(packets, |index| answered(first + index * size)) {
+            answers?.into_iter().for_each(&mut sink);
         }
         if course.stops() {
             break;
@@ -126,8 +122,16 @@ fn answer(
     Ok(())
 }
 
+/// Returns the number of rays in a packet.
+fn packet_size(is_tight: bool) -> usize {
+    if is_tight { TIGHT } else { PACKET_SIZE }
+}
+
+/// The answer to one ray, with the surface at its hit.
+type Told = (Answer, Option<Surroundings>);
+
 /// The hits of rays: one array for each property, with one entry for each ray. An entry without a value is -1 or NaN.
-#[pyclass(frozen, module = "tabray", get_all)]
+#[pyclass(frozen, subclass, module = "tabray", get_all)]
 pub struct Hits {
     /// The answer: a `Verdict`. uint8.
     verdict: Py<PyArray1<u8>>,
@@ -210,19 +214,62 @@ impl Columns {
     }
 }
 
+/// The crossings of rays and surfaces: the arrays of `Hits` with one entry for each crossing, and a last entry for each
+/// ray, which tells whether more crossings may follow.
+#[pyclass(frozen, extends = Hits, module = "tabray", get_all)]
+pub struct Crossings {
+    /// The index of the ray. int64.
+    ray: Py<PyArray1<i64>>,
+    /// 1 where the ray enters a closed shape, 0 where it leaves one, -1 otherwise. int8.
+    enters: Py<PyArray1<i8>>,
+}
+
 /// Finds the first hits of rays.
 pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: Asked, how: &How) -> PyResult<Hits> {
     let rays = rays.view();
-    let told = |query: &Query, ray: &ExactRay, answer: Answer, end: f64| {
-        let answer = answer.within(end);
-        (answer, query.surroundings(ray, &answer))
-    };
     let columns = how.run(py, rays.count, |_, course| {
         let (query, mut columns) = (Query::new(model), Columns::default());
-        let answered = answer(course, &query, &rays, asked, &told, &mut |told| columns.add(told));
-        answered.map(|()| columns)
+        let packet = |_: usize, of: &[ExactRay], ends: &[f64]| -> Vec<Told> {
+            let answers = if asked.fast { query.traced(of) } else { query.proven(of, asked.tight) };
+            let ended = answers.into_iter().zip(ends).map(|(answer, end)| answer.within(*end));
+            ended.zip(of).map(|(answer, ray)| (answer, query.surroundings(ray, &answer))).collect()
+        };
+        let size = packet_size(asked.tight);
+        in_packets(course, &rays, size, packet, |told| columns.add(told)).map(|()| columns)
     })?;
     columns.map_err(PyValueError::new_err)?.into_hits(py)
+}
+
+/// Finds the crossings of rays and surfaces.
+pub fn crossings(
+    py: Python<'_>,
+    model: &Model,
+    rays: &Rays,
+    is_tight: bool,
+    how: &How,
+) -> PyResult<Py<Crossings>> {
+    let rays = rays.view();
+    let all = how.run(py, rays.count, |_, course| {
+        let (query, mut columns) = (Query::new(model), Columns::default());
+        let (mut numbers, mut enters) = (Vec::new(), Vec::new());
+        let packet = |first: usize, of: &[ExactRay], ends: &[f64]| {
+            let of_ray = |(number, (ray, end)): (usize, (&ExactRay, &f64))| {
+                let crossings = query.crossings(ray, *end, is_tight).into_iter();
+                let told = |of: Crossing| (number, of.enters, (of.answer, query.surroundings_at(ray, &of)));
+                crossings.map(told).collect::<Vec<_>>()
+            };
+            (first..).zip(of.iter().zip(ends)).flat_map(of_ray).collect()
+        };
+        let add = |(number, is_entered, told): (usize, Option<bool>, Told)| {
+            numbers.push(number as i64);
+            enters.push(is_entered.map_or(-1, i8::from));
+            columns.add(told);
+        };
+        in_packets(course, &rays, packet_size(is_tight), packet, add).map(|()| (numbers, enters, columns))
+    })?;
+    let (ray, enters, columns) = all.map_err(PyValueError::new_err)?;
+    let (ray, enters) = (ray.into_pyarray(py).unbind(), enters.into_pyarray(py).unbind());
+    Py::new(py, PyClassInitializer::from(columns.into_hits(py)?).add_subclass(Crossings { ray, enters }))
 }
 
 /// Tells for each ray whether anything may be hit before its end.
@@ -234,12 +281,13 @@ pub fn occluded<'py>(
     how: &How,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let rays = rays.view();
-    let told = |_: &Query, _: &ExactRay, answer: Answer, end: f64| (answer.any_within(end), None);
     let may_be = how.run(py, rays.count, |_, course| {
         let (query, mut may_be) = (Query::new(model), Vec::new());
-        let asked = Asked { fast, tight: false };
-        let mut add = |(answer, _): Told| may_be.push(answer.verdict != Verdict::Miss);
-        answer(course, &query, &rays, asked, &told, &mut add).map(|()| may_be)
+        let packet = |_: usize, of: &[ExactRay], ends: &[f64]| match fast {
+            true => query.traced(of).iter().zip(ends).map(|(answer, end)| answer.t < *end).collect(),
+            false => query.occluded(of, ends),
+        };
+        in_packets(course, &rays, PACKET_SIZE, packet, |is_hit| may_be.push(is_hit)).map(|()| may_be)
     })?;
     Ok(may_be.map_err(PyValueError::new_err)?.into_pyarray(py))
 }
@@ -262,5 +310,16 @@ impl Hits {
             verdicts.len(),
             if told.is_empty() { "none" } else { &told }
         ))
+    }
+}
+
+#[pymethods]
+impl Crossings {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let rays = self.ray.bind(py).try_readonly()?;
+        // The last record of each ray is no crossing.
+        let count = rays.as_array().iter().collect::<BTreeSet<_>>().len();
+        let crossings = text::count(rays.len()? - count, "crossing");
+        Ok(format!("<tabray.Crossings of {}: {crossings}>", text::count(count, "ray")))
     }
 }

@@ -24,7 +24,7 @@ mod _native {
     use tabray_lang::list_json::Tables;
 
     #[pymodule_export]
-    use crate::hits::Hits;
+    use crate::hits::{Crossings, Hits};
     #[pymodule_export]
     use crate::image::Image;
     #[pymodule_export]

@@ -1,26 +1,23 @@
 //! Meshes from arrays.
 
 use crate::arrays::{self, Vectors};
-use crate::hits::{self, Asked, Hits, Rays};
-use crate::scene::{self, Source};
+use crate::errors;
+use crate::hits::{self, Asked, Crossings, Hits, Rays};
 use crate::work::How;
 use glam::DVec3;
 use numpy::{IntoPyArray, PyArray1};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use tabray_core::parallel;
 use tabray_core::scene::model::Model;
 use tabray_core::shapes::mesh::{Mesh as Shape, Surface};
 use tabray_core::text::count;
 use tabray_core::world::accuracy::{Accuracy, Exact};
+use tabray_lang::{Registry, reader};
 
 /// The number of points that are tested between two checks for a stop.
 const TOGETHER: usize = 64;
-
-/// A scene of one object. No entity type makes a mesh from arrays, so the object's shape is replaced afterwards.
-const SCENE: &str = "material grey { }  sphere mesh { material grey  center 0 0 0  radius 1 }";
 
 /// A mesh of triangles in memory, for queries with rays and points. `tabray.mesh` makes one.
 #[pyclass(frozen, module = "tabray")]
@@ -51,9 +48,9 @@ pub fn mesh(
     let surface =
         how.run(py, 0, |_, _| Surface::of_arrays((0..count).map(|index| view.row(index)).collect(), faces))?;
     let surface = Arc::new(surface.map_err(|error| PyValueError::new_err(error.to_string()))?);
-    let mut model =
-        scene::loaded_for_rays(py, &Source::made("<mesh>".to_owned(), PathBuf::new(), SCENE))?.model;
-    model.objects[0].shape = Shape::<Exact>::shape(surface.clone(), Accuracy::Exact).into();
+    let registry = Registry::get().map_err(PyRuntimeError::new_err)?;
+    let shape = Shape::<Exact>::shape(surface.clone(), Accuracy::Exact);
+    let model = reader::model_of_shape(registry, shape).map_err(|report| errors::exception(py, &report))?;
     Ok(Mesh { surface, turned: OnceLock::new(), model })
 }
 
@@ -100,6 +97,23 @@ impl Mesh {
     ) -> PyResult<Hits> {
         let rays = Rays::of(origins, directions, t_max)?;
         hits::hits(py, &self.model, &rays, Asked { fast, tight }, &How { threads, progress })
+    }
+
+    /// Finds the crossings of rays and the mesh, as `Scene.crossings` does.
+    #[pyo3(signature = (origins, directions, t_max=None, *, tight=false, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn crossings<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_max: Option<&Bound<'py, PyAny>>,
+        tight: bool,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Py<Crossings>> {
+        let rays = Rays::of(origins, directions, t_max)?;
+        hits::crossings(py, &self.model, &rays, tight, &How { threads, progress })
     }
 
     /// Tells for each ray whether anything is hit before its end, as `Scene.occluded` does.

@@ -1,7 +1,7 @@
 //! Scenes: reading, rendering and ray queries.
 
 use crate::errors;
-use crate::hits::{self, Asked, Hits, Rays};
+use crate::hits::{self, Asked, Crossings, Hits, Rays};
 use crate::image::{self, Image, Wanted};
 use crate::proof::{self, Proof};
 use crate::work::How;
@@ -41,7 +41,7 @@ pub struct Source {
 
 impl Source {
     /// Takes a text that the package made. `name` is its name in messages.
-    pub fn made(name: String, folder: PathBuf, text: &str) -> Self {
+    fn made(name: String, folder: PathBuf, text: &str) -> Self {
         let bytes = text.as_bytes().to_vec();
         Self { name, folder, bytes, sets: Vec::new(), set_by: Vec::new(), is_written: false }
     }
@@ -69,7 +69,7 @@ impl Source {
 }
 
 /// Makes a model for ray queries only.
-pub fn loaded_for_rays(py: Python<'_>, source: &Source) -> PyResult<Loaded> {
+fn loaded_for_rays(py: Python<'_>, source: &Source) -> PyResult<Loaded> {
     source.load(py, Some(Accuracy::Exact), true)?.map_err(|report| errors::exception(py, &report))
 }
 
@@ -230,6 +230,26 @@ impl Scene {
         let rays = Rays::of(origins, directions, t_max)?;
         let model = self.with(py, Accuracy::Exact)?;
         hits::hits(py, &model, &rays, Asked { fast, tight }, &How { threads, progress })
+    }
+
+    /// Finds the crossings of each ray with surfaces before `t_max`, in their order along the ray. The last entry of each ray has
+    /// the verdict MISS if there are no more crossings, and UNDECIDED if there may be more from its `t_low` on. The other
+    /// arguments are those of `hits`.
+    #[pyo3(signature = (origins, directions, t_max=None, *, tight=false, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn crossings<'py>(
+        &self,
+        py: Python<'py>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_max: Option<&Bound<'py, PyAny>>,
+        tight: bool,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Py<Crossings>> {
+        let rays = Rays::of(origins, directions, t_max)?;
+        let model = self.with(py, Accuracy::Exact)?;
+        hits::crossings(py, &model, &rays, tight, &How { threads, progress })
     }
 
     /// Tells for each ray whether anything is hit before `t_max`, as for shadows. False is proven; True also stands

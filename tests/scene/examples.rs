@@ -2,6 +2,8 @@
 
 #[path = "../../src/exact/examples/bounds.rs"]
 mod bounds;
+#[path = "../../src/lang/examples/mesh.rs"]
+mod mesh;
 #[path = "../../src/lang/examples/rays.rs"]
 mod rays;
 #[path = "../../src/lang/examples/scene.rs"]
@@ -70,4 +72,10 @@ fn a_scene_is_read_asked_and_rendered() {
 @@@@@@@@@@@@@@@@@@@@@@@@@@@@@%%%%%%%%########********+++
 ";
     assert_eq!(scene::answer().expect("an answer"), expected);
+}
+
+#[test]
+fn a_mesh_in_memory_is_asked_about_a_million_rays() {
+    let expected = "?";
+    assert_eq!(mesh::answer().expect("an answer"), expected);
 }

@@ -1,6 +1,6 @@
 //! All crossings of a ray and the surfaces of a scene.
 
-use super::answer::{Answer, Verdict};
+use super::answer::{Answer, Surroundings, Verdict};
 use super::ray::ExactRay;
 use super::scene::Query;
 use crate::shapes::solid;
@@ -82,6 +82,12 @@ impl Query<'_> {
         };
         crossings.push(Crossing { answer, enters: None, face: None });
         crossings
+    }
+
+    /// Returns the surface at a crossing; `None` behind the last one.
+    pub fn surroundings_at(&self, ray: &ExactRay, crossing: &Crossing) -> Option<Surroundings> {
+        let surface = self.surroundings(ray, &crossing.answer)?;
+        Some(Surroundings { face: crossing.face.or(surface.face), ..surface })
     }
 
     fn known(&self, object: usize, ray: &ExactRay, precision: Precision) -> Known {

@@ -99,6 +99,12 @@ impl Query<'_> {
         rays.iter().zip(found).map(|(ray, found)| self.proof(ray, found.as_ref(), is_tight)).collect()
     }
 
+    /// Tells for each ray whether anything may be hit before its end, a t, as for shadows. `false` is proven.
+    pub fn occluded(&self, rays: &[ExactRay], ends: &[f64]) -> Vec<bool> {
+        let answers = self.proven(rays, false).into_iter().zip(ends);
+        answers.map(|(answer, end)| answer.any_within(*end).verdict != Verdict::Miss).collect()
+    }
+
     fn proof(&self, ray: &ExactRay, found: Option<&Hit>, is_tight: bool) -> Answer {
         let (first, precision) = self.first(ray, found);
         let answer = |verdict, object, at, precision| Answer::at(ray, verdict, object, at, precision);

@@ -64,6 +64,7 @@ use std::path::Path;
 use std::time::Duration;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
+use tabray_core::world::any_shape::AnyShape;
 
 /// The memory for making a model, in bytes per byte of its text.
 const WEIGHT: u64 = 8;
@@ -148,6 +149,19 @@ pub fn read_for_rays(
         true => read(&only_rays::with_camera(bytes, report.syntax())),
         false => Err(report),
     })
+}
+
+/// Makes a model of one object with this shape, for ray queries only: a mesh from arrays, for example, has no entity
+/// type.
+///
+/// # Errors
+/// Returns a fault if the program has no entity types.
+pub fn model_of_shape(registry: &Registry, shape: impl Into<AnyShape>) -> Result<Model, Report> {
+    let text = only_rays::ONE_OBJECT.as_bytes();
+    let loaded = read_for_rays(registry, "shape", Path::new(""), text, ReadOptions::default())?;
+    let mut model = loaded.model;
+    model.objects[0].shape = shape.into();
+    Ok(model)
 }
 
 /// Tells whether nothing in a scene is visible, like the warning of the reader.

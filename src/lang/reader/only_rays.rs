@@ -27,6 +27,9 @@ pub fn mesh_for_rays(file: &Path) -> String {
     format!("{CAMERA}\nmaterial grey {{ }}\nmesh {name} {{ material grey file {file} }}\n")
 }
 
+/// A scene of one object, whose shape the caller replaces.
+pub const ONE_OBJECT: &str = "material grey { }  sphere shape { material grey  center 0 0 0  radius 1 }";
+
 /// Returns the text of a scene with a camera added.
 pub fn with_camera(bytes: &[u8], syntax: Syntax) -> Vec<u8> {
     let camera = if syntax == Syntax::Toml { CAMERA_IN_TOML } else { CAMERA };

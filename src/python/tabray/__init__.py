@@ -17,13 +17,14 @@ from typing import Mapping, Sequence
 
 from . import entities
 from ._errors import Fault, SceneError, SceneWarning
-from ._native import Hits, Image, Mesh, Proof, Scene, mesh
+from ._native import Crossings, Hits, Image, Mesh, Proof, Scene, mesh
 from ._native import read as _read
 from ._native import read_mesh as _read_mesh
 from ._places import NAME, Path as _Path, told_by
 from ._text import Entities, Value, as_sets, as_toml
 
 __all__ = [
+    "Crossings",
     "Fault",
     "Hits",
     "Image",

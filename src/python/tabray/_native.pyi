@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 Progress = Callable[[int, int], object]
 
-@final
 class Hits:
     @property
     def verdict(self) -> NDArray[np.uint8]: ...
@@ -32,6 +31,13 @@ class Hits:
     @property
     def normal(self) -> NDArray[np.float64]: ...
     def __len__(self) -> int: ...
+
+@final
+class Crossings(Hits):
+    @property
+    def ray(self) -> NDArray[np.int64]: ...
+    @property
+    def enters(self) -> NDArray[np.int8]: ...
 
 @final
 class Image:
@@ -77,6 +83,16 @@ class Mesh:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Hits: ...
+    def crossings(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_max: ArrayLike | None = None,
+        *,
+        tight: bool = False,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Crossings: ...
     def occluded(
         self,
         origins: ArrayLike,
@@ -123,6 +139,16 @@ class Scene:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Hits: ...
+    def crossings(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_max: ArrayLike | None = None,
+        *,
+        tight: bool = False,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Crossings: ...
     def occluded(
         self,
         origins: ArrayLike,

@@ -85,6 +85,22 @@ def test_points_are_inside_by_proven_crossings():
         cube.inside([[0, 0, 0], [np.inf, 0, 0]])
 
 
+def test_each_crossing_of_a_ray_has_its_face_and_its_side():
+    cube = tabray.mesh(CORNERS, CUBE)
+    crossings = cube.crossings([[0.3, 0.2, 5], [9, 9, 9], [0.3, 0.2, 0.5]], [0, 0, -2])
+    assert crossings.ray.tolist() == [0, 0, 0, 1, 2, 2]
+    miss, hit = tabray.Verdict.MISS, tabray.Verdict.HIT
+    assert crossings.verdict.tolist() == [hit, hit, miss, miss, hit, miss]
+    assert crossings.enters.tolist() == [1, 0, -1, -1, 0, -1]
+    assert crossings.face.tolist() == [2, 0, -1, -1, 0, -1]
+    assert crossings.t[crossings.verdict == hit].tolist() == [2, 2.5, 0.25]
+    assert isinstance(crossings, tabray.Hits) and repr(crossings) == "<tabray.Crossings of 3 rays: 3 crossings>"
+    before = cube.crossings([0.3, 0.2, 5], [0, 0, -2], 2.25)
+    assert before.verdict.tolist() == [hit, miss]
+    through_an_edge = cube.crossings([0.5, 5, 1], [0, -1, 0])
+    assert through_an_edge.verdict[-1] in (miss, tabray.Verdict.UNDECIDED) and (through_an_edge.ray == 0).all()
+
+
 def two_cubes(low, side, inward):
     """Return a cube of side 3, and another one, turned inward or not."""
     other = CUBE[:, ::-1] if inward else CUBE

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use rays::{BadRay, RayReader, RayRow};
 use std::io::{self, Write};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
-use tabray_core::query::{Answer, Crossing, ExactRay, Query, Surroundings};
+use tabray_core::query::{Crossing, ExactRay, Query};
 use tabray_core::render::Renderer;
 
 /// The number of rays that are answered before any answer is written: enough for all threads, and little memory.
@@ -138,21 +138,15 @@ fn answer(
     (format, out): (&AnswerFormat, &mut dyn Write),
 ) -> io::Result<()> {
     let packet = |(index, rays): (usize, &[Ray])| -> io::Result<Vec<u8>> {
-        let shown = |ray: &ExactRay, number: Option<u64>, answer: Answer, enters: Option<bool>| {
-            let surface = query.surroundings(ray, &answer);
-            Answered { model: query.model(), ray: number, answer, enters, surface }
-        };
         if asked.all {
             let first = first + (index * PACKET_SIZE) as u64;
             let of_ray = |(number, (ray, end)): (u64, &Ray)| {
-                let crossings = query.crossings(ray, *end, asked.tight).into_iter();
-                let of = |Crossing { answer, enters, face }| {
-                    let answered = shown(ray, Some(number), answer, enters);
-                    let surface =
-                        |surface: Surroundings| Surroundings { face: face.or(surface.face), ..surface };
-                    Answered { surface: answered.surface.map(surface), ..answered }
+                let of = |crossing: Crossing| {
+                    let surface = query.surroundings_at(ray, &crossing);
+                    let Crossing { answer, enters, .. } = crossing;
+                    Answered { model: query.model(), ray: Some(number), answer, enters, surface }
                 };
-                crossings.map(of).collect::<Vec<_>>()
+                query.crossings(ray, *end, asked.tight).into_iter().map(of).collect::<Vec<_>>()
             };
             return format.written((first..).zip(rays).flat_map(of_ray));
         }
@@ -162,7 +156,10 @@ fn answer(
             true => answer.any_within(*end),
             false => answer.within(*end),
         });
-        format.written(of.iter().zip(ended).map(|(ray, answer)| shown(ray, None, answer, None)))
+        format.written(of.iter().zip(ended).map(|(ray, answer)| {
+            let surface = query.surroundings(ray, &answer);
+            Answered { model: query.model(), ray: None, answer, enters: None, surface }
+        }))
     };
     let packets: Vec<_> = renderer.run(|| rays.par_chunks(PACKET_SIZE).enumerate().map(packet).collect());
     packets.into_iter().try_for_each(|bytes| out.write_all(&bytes?))
