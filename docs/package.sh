@@ -3,7 +3,7 @@
 # make it possible.
 #
 #     bash docs/package.sh              # all
-#     bash docs/package.sh linux deb    # some of: linux aarch64 windows deb wheel web vscode container sbom
+#     bash docs/package.sh linux deb    # some of: linux aarch64 windows deb wheel web vscode container sbom rays
 #
 # Writes to target/package. The programs for Linux need no library of the system. They are linked by cargo-zigbuild
 # (`pip install cargo-zigbuild`) where the targets of musl are not installed.
@@ -47,7 +47,8 @@ compiled() {
 
 # What the program of this machine writes: man pages and completions. With scenes, this is what packages have in common.
 files() {
-    local program=target/x86_64-unknown-linux-musl/dist/tabray shell
+    local shell
+    program=target/x86_64-unknown-linux-musl/dist/tabray
     if [ -d "$out/files" ]; then
         return
     elif ! compiled x86_64-unknown-linux-musl; then
@@ -157,7 +158,22 @@ sbom() {
     sed "s|file://$work/source|file:///tabray|g" "$work/source/tabray.cdx.json" > "$out/tabray-$version.cdx.json"
 }
 
-for package in "${@:-linux aarch64 windows deb wheel web vscode container sbom}"; do
+# Rays that are hard to decide, and what they hit, for scenes that need no other files: other tracers may be judged by them.
+rays() {
+    local folder=tabray-$version-hard-rays scene name
+    files
+    mkdir "$out/$folder"
+    for scene in scenes/entities/{box,capsule,cylinder,disc,ellipsoid,lathe,polygon,prism,quadric,sphere,torus,triangle}.ray \
+        scenes/models/{icosahedron.ply,knot.obj,slivers.obj}; do
+        name=$(basename "${scene%.*}")
+        cp "$scene" "$out/$folder/"
+        "$program" hard "$scene" -n 10000 -o "$out/$folder/$name-rays.csv"
+        "$program" hits "$scene" "$out/$folder/$name-rays.csv" --tight -o "$out/$folder/$name-hits.csv" 2> /dev/null
+    done
+    archive "$folder"
+}
+
+for package in "${@:-linux aarch64 windows deb wheel web vscode container sbom rays}"; do
     for one in $package; do
         seconds=$SECONDS
         printf '== %s\n' "$one"
