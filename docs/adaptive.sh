@@ -57,7 +57,7 @@ if [ "$what" = all ] || [ "$what" = rms ]; then
         scenes/gallery/{marbles,three-lamps,stained-glass,hall-of-mirrors}.ray "$shared"/conformance/fplane/fplane1.txt \
         "$shared"/conformance/spec/spec1.txt scenes/texplane/tiled.ray scenes/pplane/rainbow_tiles.ray 2>/dev/null
     # The docs show one of the panels, that of three-lamps, which is the second.
-    sed -i '1s/.*/<svg width="720" height="520" viewBox="720 70 720 520" xmlns="http:\/\/www.w3.org\/2000\/svg">/' docs/charts/adaptive.svg
+    sed -i '1s/.*/<svg width="520" height="566" viewBox="520 104 520 566" xmlns="http:\/\/www.w3.org\/2000\/svg">/' docs/charts/adaptive.svg
 fi
 
 if [ "$what" = all ] || [ "$what" = limits ]; then

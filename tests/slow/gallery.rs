@@ -12,7 +12,7 @@ use tempfile::TempDir;
 const SCENES: [&str; 1] = ["hard/flange-from-above"];
 
 /// The place of the first panel in a chart: left, top, width and height.
-const PANEL: [u32; 4] = [0, 74, 712, 500];
+const PANEL: [u32; 4] = [0, 104, 520, 566];
 
 /// Runs the program, which must succeed, and returns its standard output.
 fn tabray(arguments: &[&str], folder: &Path) -> String {

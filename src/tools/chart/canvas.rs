@@ -59,6 +59,23 @@ impl Letters {
     pub fn width(&self, text: &str) -> f64 {
         text.chars().count() as f64 * self.size * if self.is_bold { 0.62 } else { 0.55 }
     }
+
+    /// Breaks a text into lines of at most this width.
+    pub fn wrap(&self, text: &str, width: f64) -> Vec<String> {
+        let mut lines = vec![String::new()];
+        for word in text.split(' ') {
+            let line = lines.last_mut().expect("one line");
+            if line.is_empty() {
+                line.push_str(word);
+            } else if self.width(line) + self.width(word) + self.width(" ") <= width {
+                line.push(' ');
+                line.push_str(word);
+            } else {
+                lines.push(word.to_owned());
+            }
+        }
+        lines
+    }
 }
 
 /// Makes an error of a failed drawing operation; the errors of `plotters` may not live long enough to be kept.
@@ -143,6 +160,23 @@ impl<D: DrawingBackend> Canvas<D> {
     /// Draws a line of text, vertically centred on its position.
     pub fn text(&self, text: &str, at: (f64, f64), align: Align, letters: Letters) -> io::Result<()> {
         self.write(text, at, align, letters, FontTransform::None)
+    }
+
+    /// Draws a text in lines of at most this width, left-aligned, and returns the height of the last line.
+    pub fn paragraph(
+        &self,
+        text: &str,
+        (x, y): (f64, f64),
+        width: f64,
+        line_height: f64,
+        letters: Letters,
+    ) -> io::Result<f64> {
+        let mut last = y;
+        for (index, line) in letters.wrap(text, width).iter().enumerate() {
+            last = y + line_height * index as f64;
+            self.text(line, (x, last), Align::Left, letters)?;
+        }
+        Ok(last)
     }
 
     /// Draws a line of text that runs upward.

@@ -11,9 +11,18 @@ use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
 
-const PANEL: (f64, f64) = (720.0, 500.0);
-const HEAD: f64 = 78.0;
-const FOOT: f64 = 86.0;
+/// The width and height of a panel, and the sizes of its letters, in pixels: a phone that shows one panel 360 pixels wide
+/// shows letters of about 9 pixels.
+const PANEL: (f64, f64) = (520.0, 560.0);
+const TITLE: f64 = 17.0;
+const TEXT: f64 = 16.0;
+
+/// The height of a line of text, and the free space on either side of a chart, in pixels.
+const LINE: f64 = 22.0;
+const MARGIN: f64 = 20.0;
+
+/// The height above the panels, in pixels: that of the title and of a caption of up to three lines.
+const HEAD: f64 = 110.0;
 
 /// The height of the strip below an error axis for errors that do not matter, in pixels.
 const NOTHING: f64 = 34.0;
@@ -59,19 +68,27 @@ fn columns(chart: &Chart) -> usize {
     chart.panels.len().clamp(1, 2)
 }
 
-fn size(chart: &Chart) -> (f64, f64) {
+/// Returns the width of a chart, and the height at which its legend begins, in pixels.
+fn size_without_legend(chart: &Chart) -> (f64, f64) {
     let columns = columns(chart);
     let rows = chart.panels.len().div_ceil(columns).max(1);
-    (columns as f64 * PANEL.0, HEAD + rows as f64 * PANEL.1 + FOOT)
+    (columns as f64 * PANEL.0, HEAD + rows as f64 * PANEL.1)
+}
+
+fn size(chart: &Chart) -> (f64, f64) {
+    let (width, top) = size_without_legend(chart);
+    let notes: usize =
+        notes().iter().map(|note| Letters::new(TEXT).wrap(note, width - 2.0 * MARGIN).len()).sum();
+    let rows = legend(chart, width).last().map_or(0.0, |entry| entry.at.1) + LINE;
+    (width, top + rows + LINE * (notes as f64 + 1.0))
 }
 
 fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<()> {
     let canvas = Canvas::new(backend.into_drawing_area(), scale)?;
-    let (_, height) = size(chart);
+    let (width, bottom) = size_without_legend(chart);
     let head = Letters { is_bold: true, ..Letters::new(20.0) };
-    let small = Letters { colour: GREY, ..Letters::new(12.5) };
     let title = format!("{}: cost and error of each choice", chart.scene);
-    canvas.text(&title, (20.0, 26.0), Align::Left, head)?;
+    canvas.text(&title, (MARGIN, 26.0), Align::Left, head)?;
     let machine = &chart.machine;
     let trust = match (chart.is_noisy(), chart.is_busy()) {
         (true, _) => ": do not trust the times",
@@ -85,29 +102,37 @@ fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<
         machine.date,
         100.0 * chart.noise()
     );
-    canvas.text(&caption, (20.0, 54.0), Align::Left, small)?;
+    let small = Letters { colour: GREY, ..Letters::new(TEXT) };
+    canvas.paragraph(&caption, (MARGIN, 52.0), width - 2.0 * MARGIN, LINE, small)?;
     let columns = columns(chart);
     for (index, panel) in chart.panels.iter().enumerate() {
         let corner = ((index % columns) as f64 * PANEL.0, HEAD + (index / columns) as f64 * PANEL.1);
         draw_panel(&canvas, chart, panel, corner)?;
     }
-    legend(&canvas, chart, height - FOOT + 18.0)?;
+    let mut y = bottom;
+    for entry in legend(chart, width) {
+        y = bottom + entry.at.1;
+        canvas.marker((entry.at.0, y), entry.marker, entry.colour, false)?;
+        canvas.text(entry.text, (entry.at.0 + 18.0, y), Align::Left, Letters::new(TEXT))?;
+    }
+    for note in notes() {
+        y = canvas.paragraph(&note, (MARGIN, y + LINE), width - 2.0 * MARGIN, LINE, small)?;
+    }
     canvas.finish()
 }
 
-/// Draws the legend of the markers that the chart contains.
-fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::Result<()> {
-    let letters = Letters::new(12.5);
-    let mut x = 26.0;
+/// A marker in the legend, with its meaning. `at` is its place below the panels.
+struct LegendEntry {
+    at: (f64, f64),
+    marker: Marker,
+    colour: RGBColor,
+    text: &'static str,
+}
+
+/// Returns the legend of the markers that the chart contains, in rows of this width.
+fn legend(chart: &Chart, width: f64) -> Vec<LegendEntry> {
     let points = || chart.panels.iter().flat_map(|panel| &panel.points);
-    let mut add = |marker: Marker, colour: RGBColor, is_hollow: bool, text: &str| {
-        canvas.marker((x, y), marker, colour, is_hollow)?;
-        canvas.text(text, (x + 16.0, y), Align::Left, letters)?;
-        x += 40.0 + letters.width(text);
-        io::Result::Ok(())
-    };
-    add(Marker::Star, BLACK, false, "the default")?;
-    for (family, name) in [
+    let families = [
         (Family::Own, "tabray's method"),
         (Family::Notes, "the notes' methods"),
         (Family::Sampling, "samples along the ray + a refiner"),
@@ -116,22 +141,36 @@ fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::R
         (Family::Sobol, "sobol"),
         (Family::Random, "random"),
         (Family::Adaptive, "adaptive, by the maximum number"),
-    ] {
-        if points().any(|point| point.family == family) {
+    ];
+    let (mut x, mut y) = (MARGIN + 6.0, 18.0);
+    iter::once((Marker::Star, BLACK, "the default"))
+        .chain(families.into_iter().filter_map(|(family, text)| {
             let (marker, colour) = look(family);
-            add(marker, colour, false, name)?;
-        }
-    }
-    let second = y + 24.0;
-    canvas.marker((26.0, second), Marker::Disc, GREY, true)?;
-    let text = "hollow: some hits are missed, invented, not the first or inaccurate (percent of all rays); line: the Pareto \
-                front, where no choice without them is both faster and more exact";
-    canvas.text(text, (40.0, second), Align::Left, letters)?;
-    let text = format!(
-        "times: packets of up to {PACKET_SIZE} rays on one thread, as in a render; where a hit is searched for, all methods but \
-         tabray's own take rays one by one"
-    );
-    canvas.text(&text, (26.0, second + 22.0), Align::Left, Letters { colour: GREY, ..letters })
+            points().any(|point| point.family == family).then_some((marker, colour, text))
+        }))
+        .map(|(marker, colour, text)| {
+            let long = 40.0 + Letters::new(TEXT).width(text);
+            if x + long > width {
+                (x, y) = (MARGIN + 6.0, y + LINE);
+            }
+            let at = (x, y);
+            x += long;
+            LegendEntry { at, marker, colour, text }
+        })
+        .collect()
+}
+
+/// Returns the explanations below the legend.
+fn notes() -> [String; 2] {
+    [
+        "hollow: some hits are missed, invented, not the first or inaccurate (percent of all rays); line: the Pareto front, \
+         where no choice without them is both faster and more exact"
+            .to_owned(),
+        format!(
+            "times: packets of up to {PACKET_SIZE} rays on one thread, as in a render; where a hit is searched for, all \
+             methods but tabray's own take rays one by one"
+        ),
+    ]
 }
 
 /// Returns the marker and the colour of a family.
@@ -156,14 +195,14 @@ fn draw_panel<D: DrawingBackend>(
     let axes = Axes::of(panel, corner);
     let (plot, place) = (axes.plot, |point: &Point| axes.place(point));
     let middle = 0.5 * (plot.left + plot.right);
-    let title = Letters { is_bold: true, ..Letters::new(14.5) };
+    let title = Letters { is_bold: true, ..Letters::new(TITLE) };
     canvas.text(&panel.title, (middle, corner.1 + 18.0), Align::Middle, title)?;
-    let note = Letters { colour: GREY, ..Letters::new(12.0) };
-    canvas.text(&panel.note, (middle, corner.1 + 39.0), Align::Middle, note)?;
+    let note = Letters { colour: GREY, ..Letters::new(TEXT) };
+    canvas.text(&panel.note, (middle, corner.1 + 41.0), Align::Middle, note)?;
     axes.draw(canvas)?;
-    let axis = Letters::new(12.5);
-    canvas.text(panel.unit().0, (middle, plot.bottom + 36.0), Align::Middle, axis)?;
-    canvas.upward(panel.measure(), (corner.0 + 20.0, 0.5 * (plot.top + plot.bottom)), axis)?;
+    let axis = Letters::new(TEXT);
+    canvas.text(panel.unit().0, (middle, plot.bottom + 40.0), Align::Middle, axis)?;
+    canvas.upward(panel.measure(), (corner.0 + 14.0, 0.5 * (plot.top + plot.bottom)), axis)?;
 
     if matches!(panel.subject, Subject::Samples | Subject::Bounces) {
         for family in [Family::Sobol, Family::Random, Family::Own] {
@@ -203,10 +242,10 @@ fn draw_points<D: DrawingBackend>(
     axes: &Axes,
 ) -> io::Result<()> {
     let places: Vec<_> = points.iter().map(|point| axes.place(point)).collect();
-    let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(12.0) };
+    let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(TEXT) };
     let names: Vec<String> = points.iter().map(|point| name(panel, point)).collect();
-    // With a gap between neighbours, so two numbers do not look like one.
-    let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 15.0);
+    // With a gap between neighbours, so that two numbers do not look like one.
+    let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 19.0);
     let sizes: Vec<_> = names.iter().zip(points).map(size).collect();
     let labels = labels::place(&places, &sizes, lines, axes.plot);
     for (label, place) in labels.iter().zip(&places) {
@@ -248,10 +287,10 @@ struct Axes {
 impl Axes {
     fn of(panel: &Panel, corner: (f64, f64)) -> Self {
         let plot = PlotArea {
-            left: corner.0 + 92.0,
-            top: corner.1 + 56.0,
-            right: corner.0 + PANEL.0 - 22.0,
-            bottom: corner.1 + PANEL.1 - 56.0,
+            left: corner.0 + 84.0,
+            top: corner.1 + 60.0,
+            right: corner.0 + PANEL.0 - 12.0,
+            bottom: corner.1 + PANEL.1 - 62.0,
         };
         let ((_, scale), nothing) = (panel.unit(), panel.negligible());
         let has_nothing = panel.points.iter().any(|point| point.error <= nothing);
@@ -274,11 +313,11 @@ impl Axes {
     /// Draws the ticks with their lines, and the frame.
     fn draw<D: DrawingBackend>(&self, canvas: &Canvas<D>) -> io::Result<()> {
         let Self { plot, across, up, nothing, has_nothing, floor, .. } = self;
-        let ticks = Letters::new(12.0);
+        let ticks = Letters::new(TEXT);
         for (time, text) in across.ticks() {
             let x = across.at(time);
             canvas.line(&[(x, plot.top), (x, plot.bottom)], LIGHT, 1.0)?;
-            canvas.text(&text, (x, plot.bottom + 14.0), Align::Middle, ticks)?;
+            canvas.text(&text, (x, plot.bottom + 16.0), Align::Middle, ticks)?;
         }
         for (error, text) in if self.has_errors { up.ticks() } else { Vec::new() } {
             let y = up.at(error);
