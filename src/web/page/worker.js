@@ -53,15 +53,17 @@ const askSafely = (path, body) => {
 const { port1, port2 } = new MessageChannel()
 const goOn = () => port2.postMessage(null)
 
+const end = (version, bytes) => {
+  job = null
+  postMessage({ version, ended: decoder.decode(bytes) })
+}
+
 port1.onmessage = () => {
   if (!job) return
   const { version, what, count } = job, before = performance.now()
   const { status, bytes } = askSafely(`${what}/${version}/${count}`)
   const took = performance.now() - before
-  if (status !== 200) {
-    job = null
-    return postMessage({ version, ended: decoder.decode(bytes) })
-  }
+  if (status !== 200) return end(version, bytes)
   // Each turn makes the plan again, so it must be long enough for more than that.
   if (!count) return Object.assign(job, { turn: Math.max(TURN, 4 * took), count: 4 }), goOn()
   if (took < job.turn / 2) job.count = 2 * count
@@ -74,8 +76,10 @@ port1.onmessage = () => {
     job = null
     return postMessage({ version, proven: true })
   }
-  const { words } = JSON.parse(decoder.decode(askSafely(`painted/${version}`).bytes))
-  postMessage({ version, painted: (performance.now() - job.began) / 1000, words })
+  const { began } = job, told = askSafely(`painted/${version}`)
+  if (told.status !== 200) return end(version, told.bytes)
+  const { words } = JSON.parse(decoder.decode(told.bytes))
+  postMessage({ version, painted: (performance.now() - began) / 1000, words })
   job = { ...job, what: 'prove', count: 64 }
   goOn()
 }
