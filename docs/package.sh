@@ -129,7 +129,7 @@ vscode() {
     rm -rf "$work/vscode/node_modules"
     cp "$out/files/tabray.tmLanguage.json" LICENSE "$work/vscode/"
     if (cd "$work/vscode" && npm install --silent --omit=dev --no-audit --no-fund &&
-        npx --yes @vscode/vsce package --allow-missing-repository --out "$work/tabray.vsix" > vsce.log); then
+        npx --yes @vscode/vsce package --allow-missing-repository --out "$work/tabray.vsix" > "$work/vsce.log"); then
         mv "$work/tabray.vsix" "$out/tabray-$version.vsix"
     else
         skip "the extension (it needs npm's registry)"
