@@ -196,9 +196,10 @@ fn draw_panel<D: DrawingBackend>(
     let (plot, place) = (axes.plot, |point: &Point| axes.place(point));
     let middle = 0.5 * (plot.left + plot.right);
     let title = Letters { is_bold: true, ..Letters::new(TITLE) };
-    canvas.text(&panel.title, (middle, corner.1 + 18.0), Align::Middle, title)?;
+    let centre = corner.0 + 0.5 * PANEL.0;
+    canvas.text(&panel.title, (centre, corner.1 + 18.0), Align::Middle, title)?;
     let note = Letters { colour: GREY, ..Letters::new(TEXT) };
-    canvas.text(&panel.note, (middle, corner.1 + 41.0), Align::Middle, note)?;
+    canvas.text(&panel.note, (centre, corner.1 + 41.0), Align::Middle, note)?;
     axes.draw(canvas)?;
     let axis = Letters::new(TEXT);
     canvas.text(panel.unit().0, (middle, plot.bottom + 40.0), Align::Middle, axis)?;
