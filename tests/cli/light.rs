@@ -124,6 +124,25 @@ fn black_burnt_and_empty_images_say_why() {
 }
 
 #[test]
+fn a_check_of_some_pixels_says_so_and_advises_what_a_camera_takes() {
+    let folder = folder();
+    let hole = "look_at eye { pixeldim 8 6  position 0 0 9  target 0 0 0  angle 5 }  material grey { }
+        torus ring { material grey  center 0 0 0  direction 0 0 1  radius 2  tube 0.5 }
+        light lamp { location 0 5 5  emissivity 1 1 1 }";
+    let (_, said) = run(&folder, hole, &["check", "a.ray"]);
+    assert!(
+        said.contains("the image seems to be black: none of 48 pixels that were looked at shows an object"),
+        "{said}"
+    );
+    let faint =
+        format!("{FAR} rules free }} {}", PART.replace("emissivity 1 1 1", "emissivity 1e-14 1e-14 1e-14"));
+    let (_, said) = run(&folder, &faint, &["check", "a.ray"]);
+    assert!(said.contains("seems to be black") && said.contains("`key` with an emissivity of"), "{said}");
+    // The exposure would be of more than 32 stops.
+    assert!(!said.contains("`exposure"), "{said}");
+}
+
+#[test]
 fn images_that_are_as_they_should_be_are_not_remarked() {
     let folder = folder();
     let lit = format!("{FAR} rules free }} {PART}");

@@ -35,6 +35,9 @@ const GOOD: f64 = 128.0;
 const BURNT: f64 = 0.25;
 const TOO_BRIGHT: f64 = 1.02;
 
+/// The largest exposure of a camera, in stops, upward and downward.
+const MAX_STOPS: f64 = 32.0;
+
 /// The maximum number of lights that are named.
 const NAMED: usize = 3;
 
@@ -57,6 +60,11 @@ pub struct Remark {
 /// Returns the remark on a part of an image with these levels, at most one. Columns count from the left and
 /// rows from the top.
 pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<Remark> {
+    remark_on("the image is", plan, part, levels)
+}
+
+/// Returns the remark on a part of an image. A remark on black begins with these words.
+fn remark_on(image: &str, plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<Remark> {
     if levels.pixels == 0 || plan.model.objects.is_empty() {
         return None;
     }
@@ -70,7 +78,11 @@ pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<
         let mut plan = Plan::new(plan.model);
         plan.bounces = BOUNCES;
         let survey = Survey::of(&plan, &places);
-        if is_black { Some(black(&plan, &survey, levels.brightest)) } else { burnt(&plan, &survey, levels) }
+        if is_black {
+            Some(black(image, &plan, &survey, levels.brightest))
+        } else {
+            burnt(&plan, &survey, levels)
+        }
     })
 }
 
@@ -126,7 +138,7 @@ fn tried_here(model: &Model) -> Option<Remark> {
         let few: Vec<_> = places.iter().skip(step / 2).step_by(step).copied().collect();
         found = levels(&plan, &few);
     }
-    remark(&plan, part, &found)
+    remark_on("the image seems to be", &plan, part, &found)
 }
 
 /// Returns pixels spread over a part of an image, by column and row from the bottom.
@@ -187,18 +199,29 @@ fn place(at: DVec3) -> String {
 }
 
 /// Says why an image is black.
-fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
+fn black(image: &str, plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
     let (camera, display) = (&plan.camera, plan.camera.display());
     let by_notes = camera.rules == Rules::Notes;
     let rules = if by_notes { "under the notes' rules " } else { "" };
     let level = |light: f64| short(255.0 * display.shown(Rgb::splat(light)).x);
     let mut reasons = Vec::new();
     let lamps = survey.brightest();
-    for light in lamps.iter().take(NAMED) {
+    if survey.hits == 0 {
+        reasons.push(format!(
+            "none of {} that were looked at shows an object",
+            text::count(survey.seen.len(), "pixel")
+        ));
+    }
+    for light in lamps.iter().take(NAMED).filter(|_| survey.hits > 0) {
         let (lamp, name) = (&survey.lamps[*light], survey.name(*light));
         reasons.push(if lamp.shines == 0 {
-            let aside = survey.hits - (lamp.blocked + lamp.behind).min(survey.hits);
-            let why = [(lamp.blocked, "in shadow"), (lamp.behind, "turned away"), (aside, "beside its beam")];
+            let clear = survey.hits - (lamp.blocked + lamp.behind + lamp.aside).min(survey.hits);
+            let why = [
+                (lamp.blocked, "in shadow"),
+                (lamp.behind, "turned away"),
+                (lamp.aside, "beside its beam"),
+                (clear, "that scatter no light"),
+            ];
             let why = why.iter().filter(|(places, _)| *places > 0);
             let why: Vec<_> = why.map(|(places, why)| format!("{places} {why}")).collect();
             format!(
@@ -216,7 +239,7 @@ fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
         });
     }
     let more = lamps.len().saturating_sub(NAMED);
-    if more > 0 {
+    if more > 0 && survey.hits > 0 {
         reasons.push(format!("{} more add less", text::count(more, "light")));
     }
     if survey.ambient > 0.0 {
@@ -224,8 +247,8 @@ fn black(plan: &Plan, survey: &Survey, brightest: u8) -> Remark {
         reasons.push(format!("`ambient` adds up to {} levels{distance}", level(survey.ambient)));
     }
     let message = match brightest {
-        0 => "the image is black",
-        _ => &format!("the image is almost black, up to level {brightest} of 255"),
+        0 => &format!("{image} black"),
+        _ => &format!("{image} almost black, up to level {brightest} of 255"),
     };
     let message = if reasons.is_empty() {
         format!("{message}: there is no light, and no `ambient` that is seen")
@@ -260,7 +283,9 @@ fn brighter(survey: &Survey, lamps: &[usize]) -> String {
     let seen = survey.seen.iter().copied().fold(0.0, f64::max);
     if !is_notes && seen > 0.0 {
         let stops = libm::log2(good / seen) + plan.camera.exposure;
-        cures.push(format!("`exposure {}`", rounded(stops)));
+        if stops.abs() <= MAX_STOPS {
+            cures.push(format!("`exposure {}`", rounded(stops)));
+        }
     }
     if cures.is_empty() {
         return "`tabray probe` explains what the rays of a pixel meet, and which lights reach it".to_owned();
@@ -292,6 +317,7 @@ fn burnt(plan: &Plan, survey: &Survey, levels: &Levels) -> Option<Remark> {
     let bright = seen[seen.len() * 9 / 10];
     let stops = plan.camera.exposure - (2.0 * libm::log2(bright)).ceil() / 2.0;
     let help = match plan.camera.rules {
+        _ if stops.abs() > MAX_STOPS => format!("divide the emissivities by {}", rounded(bright)),
         Rules::Notes => format!(
             "divide the emissivities by {}, or render with `--exposure {}`",
             rounded(bright),

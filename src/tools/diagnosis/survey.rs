@@ -24,6 +24,8 @@ pub struct Lamp {
     pub blocked: usize,
     /// The number of places that face away from it.
     pub behind: usize,
+    /// The number of places beside its beam.
+    pub aside: usize,
 }
 
 /// The surfaces at some places of an image, without mirrors and glass.
@@ -59,7 +61,8 @@ struct Hit {
 impl<'p> Survey<'p> {
     /// Looks at these pixels of a plan for any ray, by column and row from the bottom.
     pub fn of(plan: &'p Plan<'p>, places: &[[usize; 2]]) -> Self {
-        let lamp = Lamp { near: f64::INFINITY, most: 0.0, free: 0.0, shines: 0, blocked: 0, behind: 0 };
+        let lamp =
+            Lamp { near: f64::INFINITY, most: 0.0, free: 0.0, shines: 0, blocked: 0, behind: 0, aside: 0 };
         let mut survey = Self {
             plan,
             hits: 0,
@@ -112,7 +115,7 @@ impl TraceObserver for Survey<'_> {
                 let lamp = &mut self.lamps[light];
                 match outcome {
                     LightOutcome::Behind => lamp.behind += 1,
-                    LightOutcome::Aside => {}
+                    LightOutcome::Aside => lamp.aside += 1,
                     LightOutcome::Blocked(_) => lamp.blocked += 1,
                     LightOutcome::Shines { colour, .. } => {
                         let lamp = &self.plan.model.lights[light].value;
