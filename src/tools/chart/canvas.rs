@@ -60,6 +60,16 @@ impl Letters {
         text.chars().count() as f64 * self.size * if self.is_bold { 0.62 } else { 0.55 }
     }
 
+    /// Shortens a name to this width.
+    pub fn fit(&self, name: &str, width: f64) -> String {
+        let room = (width * name.chars().count() as f64 / self.width(name).max(1.0)) as usize;
+        if self.width(name) <= width {
+            return name.to_owned();
+        }
+        let kept: String = name.chars().take(room.saturating_sub(1)).collect();
+        format!("{kept}…")
+    }
+
     /// Breaks a text into lines of at most this width.
     pub fn wrap(&self, text: &str, width: f64) -> Vec<String> {
         let mut lines = vec![String::new()];

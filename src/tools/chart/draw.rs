@@ -87,7 +87,8 @@ fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<
     let canvas = Canvas::new(backend.into_drawing_area(), scale)?;
     let (width, bottom) = size_without_legend(chart);
     let head = Letters { is_bold: true, ..Letters::new(20.0) };
-    let title = format!("{}: cost and error of each choice", chart.scene);
+    let claim = ": cost and error of each choice";
+    let title = head.fit(&chart.scene, width - 2.0 * MARGIN - head.width(claim)) + claim;
     canvas.text(&title, (MARGIN, 26.0), Align::Left, head)?;
     let machine = &chart.machine;
     let trust = match (chart.is_noisy(), chart.is_busy()) {
@@ -197,7 +198,12 @@ fn draw_panel<D: DrawingBackend>(
     let middle = 0.5 * (plot.left + plot.right);
     let title = Letters { is_bold: true, ..Letters::new(TITLE) };
     let centre = corner.0 + 0.5 * PANEL.0;
-    canvas.text(&panel.title, (centre, corner.1 + 18.0), Align::Middle, title)?;
+    canvas.text(
+        &title.fit(&panel.title, PANEL.0 - MARGIN),
+        (centre, corner.1 + 18.0),
+        Align::Middle,
+        title,
+    )?;
     let note = Letters { colour: GREY, ..Letters::new(TEXT) };
     canvas.text(&panel.note, (centre, corner.1 + 41.0), Align::Middle, note)?;
     axes.draw(canvas)?;
