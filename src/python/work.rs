@@ -1,6 +1,6 @@
 //! Long work without the interpreter's lock. It runs on threads of its own until it is finished or Ctrl-C is pressed.
 
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -11,6 +11,9 @@ use tabray_tools::threads;
 
 /// The time between two checks for signals and reports of progress.
 const POLL: Duration = Duration::from_millis(50);
+
+/// The maximum number of threads, as on the command line.
+const MAX_THREADS: usize = 1024;
 
 /// Settings of long work.
 pub struct How<'py> {
@@ -51,8 +54,8 @@ impl How<'_> {
         all: usize,
         work: impl FnOnce(&Renderer, &Course) -> T + Send,
     ) -> PyResult<T> {
-        if self.threads == Some(0) {
-            return Err(pyo3::exceptions::PyValueError::new_err("`threads` must be at least 1"));
+        if self.threads.is_some_and(|threads| !(1..=MAX_THREADS).contains(&threads)) {
+            return Err(PyValueError::new_err(format!("`threads` must be from 1 to {MAX_THREADS}")));
         }
         let renderer = threads::renderer_with(self.threads.unwrap_or(0));
         // This call starts its own threads: a forked process has none of its parent's.
