@@ -15,7 +15,7 @@ const HALVINGS: u32 = 30;
 /// The least distance of a vertex from an end of its edge, in edges, so every triangle has an area.
 const LEAST: f64 = 1.0 / 512.0;
 
-/// The same distance in steps of single precision.
+/// The least distance of a vertex from an end of its edge, in steps of single precision.
 const STEPS: f64 = 8.0;
 
 /// The minimum number of corners, edges or cells for which threads share the work.

@@ -49,7 +49,7 @@ pub struct SolidPart {
     pub(super) is_outer: bool,
     /// The condition under which a point near this surface lies in the solid, given the parts that contain it.
     pub(super) tree: Tree,
-    /// The same condition for any point.
+    /// The condition under which any point lies in the solid.
     whole: Tree,
     /// The path to the part through the tree.
     path: Vec<usize>,

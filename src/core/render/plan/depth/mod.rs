@@ -27,9 +27,9 @@
 //! beyond(i, side) >= kept_j * S_j + max(T_j * beyond(j, other side), beyond(j, same side))
 //! ```
 //!
-//! The same holds for `P` below, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray gets a
-//! quarter of the allowance, and the transmitted one the rest, or one of them gets all where the other does not
-//! exist. The weight of the reflected branch is the largest `r` of a channel, rounded up to a power of two.
+//! The same inequality holds for `P` below, but with 0 for `kept_j * S_j` where nothing is kept. The reflected ray
+//! gets a quarter of the allowance, and the transmitted one the rest, or one of them gets all where the other does
+//! not exist. The weight of the reflected branch is the largest `r` of a channel, rounded up to a power of two.
 //!
 //! The background counts as an object around everything, whose own light `S` is its brightest channel times
 //! [`MAX_DIST`]: it is not divided by the path length `d`, but no ray leaves an object where `d` is more than that.
