@@ -48,10 +48,11 @@ compiled() {
 # What the program of this machine writes: man pages and completions. With scenes, this is what packages have in common.
 files() {
     local shell
-    program=target/x86_64-unknown-linux-musl/dist/tabray
     if [ -d "$out/files" ]; then
         return
-    elif ! compiled x86_64-unknown-linux-musl; then
+    fi
+    program=target/x86_64-unknown-linux-musl/dist/tabray
+    if ! compiled x86_64-unknown-linux-musl; then
         cargo build --profile dist --locked --bin tabray
         program=target/dist/tabray
     fi

@@ -60,14 +60,16 @@ impl Letters {
         text.chars().count() as f64 * self.size * if self.is_bold { 0.62 } else { 0.55 }
     }
 
-    /// Shortens a name to this width.
+    /// Shortens a name in its middle, as its end may tell it from others, to at most this width in pixels.
     pub fn fit(&self, name: &str, width: f64) -> String {
-        let room = (width * name.chars().count() as f64 / self.width(name).max(1.0)) as usize;
         if self.width(name) <= width {
             return name.to_owned();
         }
-        let kept: String = name.chars().take(room.saturating_sub(1)).collect();
-        format!("{kept}…")
+        let count = name.chars().count();
+        let kept = (width / self.width("n")) as usize / 2;
+        let begin: String = name.chars().take(kept).collect();
+        let end: String = name.chars().skip(count.saturating_sub(kept.saturating_sub(1))).collect();
+        format!("{begin}…{end}")
     }
 
     /// Breaks a text into lines of at most this width.
@@ -211,5 +213,19 @@ impl<D: DrawingBackend> Canvas<D> {
         let font = ("sans-serif", letters.size * self.scale, style).into_font().transform(turn);
         let style = font.color(&letters.colour).pos(Pos::new(across, VPos::Center));
         self.area.draw(&Text::new(text.to_owned(), self.pixel(at), style)).map_err(failed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_name_keeps_its_begin_and_its_end() {
+        let letters = Letters::new(10.0);
+        assert_eq!(letters.fit("short", 45.0), "short");
+        let fitted = letters.fit("abcdefghij: grazing", 45.0);
+        assert_eq!(fitted, "abcd…ing");
+        assert!(letters.width(&fitted) <= 45.0);
     }
 }
