@@ -25,7 +25,7 @@ inventory::submit! {
 }
 
 /// The greatest reflectivity. One below 0, or of no value, counts as 0.
-const MOST: f64 = 1e6;
+const MAX_REFLECTIVITY: f64 = 1e6;
 
 /// The formulas of the three reflectivities; `None` for the material's.
 #[derive(Clone)]
@@ -46,7 +46,7 @@ fn colour(formulas: Option<&Formulas>, own: Rgb, at: &SurfacePoint) -> Rgb {
     let values = at.variables();
     let channel = |formula: &SurfaceField| {
         let value = formula.at(values);
-        if value > 0.0 { value.min(MOST) } else { 0.0 }
+        if value > 0.0 { value.min(MAX_REFLECTIVITY) } else { 0.0 }
     };
     Rgb::from(formulas.each_ref().map(channel))
 }
@@ -70,7 +70,7 @@ impl Shader for ByFormula {
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         let n = Interval::<F>::constant;
-        let channel = |formula: &SurfaceField| Some(at.value(formula)?.max(n(0.0)).min(n(MOST)));
+        let channel = |formula: &SurfaceField| Some(at.value(formula)?.max(n(0.0)).min(n(MAX_REFLECTIVITY)));
         let colour = |formulas: &Option<Formulas>, own| match formulas {
             Some([red, green, blue]) => Some([channel(red)?, channel(green)?, channel(blue)?]),
             None => Some(own),
@@ -87,7 +87,7 @@ impl Shader for ByFormula {
     fn brightest(&self, material: &Material) -> Option<Look> {
         let most = |formula: &SurfaceField| {
             let bound = surface_formula::range(formula).high;
-            if bound < MOST { bound.max(0.0) } else { MOST }
+            if bound < MAX_REFLECTIVITY { bound.max(0.0) } else { MAX_REFLECTIVITY }
         };
         let colour = |formulas: &Option<Formulas>, own: Rgb| match formulas {
             Some(formulas) => Rgb::from(formulas.each_ref().map(most)),

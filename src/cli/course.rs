@@ -14,7 +14,7 @@ use tabray_lang::registry::Registry;
 
 /// The maximum number of objects of a scene that is compared: the course's scenes have few, and none of them from a
 /// file; each is made twice.
-const MOST: usize = 1000;
+const MAX_OBJECTS: usize = 1000;
 
 /// The maximum number of objects times pixels of an image whose rays are searched for edges.
 const MOST_RAYS: usize = 1 << 24;
@@ -41,7 +41,7 @@ impl Differences {
     /// Examines the objects of a scene that is rendered with the course's methods.
     pub fn of(registry: &Registry, source: &Source, model: &Model) -> Self {
         let is_large = || {
-            model.objects.len() > MOST
+            model.objects.len() > MAX_OBJECTS
                 || model.objects.iter().any(|object| object.args.entity().reads_files())
         };
         if model.camera.value.accuracy != Accuracy::Classic || messages::is_quiet() || is_large() {

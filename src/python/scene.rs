@@ -198,8 +198,11 @@ impl Scene {
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Image> {
         self.needs_camera()?;
-        if samples.is_some_and(|samples| !(1..=Sampler::MOST).contains(&samples)) {
-            return Err(PyValueError::new_err(format!("`samples` must be from 1 to {}", Sampler::MOST)));
+        if samples.is_some_and(|samples| !(1..=Sampler::MAX_SAMPLES).contains(&samples)) {
+            return Err(PyValueError::new_err(format!(
+                "`samples` must be from 1 to {}",
+                Sampler::MAX_SAMPLES
+            )));
         }
         let wanted = Wanted { size: self.size(width, height)?, samples, depth, objects, normals };
         let model = match method {

@@ -96,7 +96,7 @@ fn error(renderer: &Renderer, model: &Model, promise: &Promise) -> f64 {
         let is_off =
             |index: &usize| 255.0 * (chosen[*index] - right[*index]).abs().max_element() > promise.bound;
         let off: Vec<_> = (0..pixels.len()).filter(is_off).collect();
-        plan.camera.samples = Sampler::MOST;
+        plan.camera.samples = Sampler::MAX_SAMPLES;
         let again = colours(renderer, &plan, &off.iter().map(|index| pixels[*index]).collect::<Vec<_>>());
         off.iter().zip(again).for_each(|(index, colour)| right[*index] = colour);
     }

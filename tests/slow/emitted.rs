@@ -142,7 +142,7 @@ fn off_by(model: &Model, pixel: [usize; 2], found: DVec3) -> f64 {
         let error =
             255.0 * (means.iter().map(square).sum::<DVec3>() / (count * (count - 1.0))).max_element().sqrt();
         let off = 255.0 * (display.shown(found) - whole).abs().max_element();
-        if (off - LIMIT).abs() > CLEAR * error || SEQUENCES * length >= Sampler::MOST {
+        if (off - LIMIT).abs() > CLEAR * error || SEQUENCES * length >= Sampler::MAX_SAMPLES {
             return off;
         }
         length *= 4;

@@ -8,7 +8,7 @@ use tabray_core::text;
 use tabray_exact::decimal::{self, DecimalFault};
 
 /// The highest number of a frame.
-const MOST: u32 = 999_999;
+const MAX_FRAME: u32 = 999_999;
 
 /// The minimum number of digits in the name of a frame.
 const DIGITS: usize = 4;
@@ -28,7 +28,7 @@ pub struct Args {
     sweeps: Vec<String>,
     /// Render only this frame of --frames, for example as one task of a job array; with --part, only a part of this
     /// frame
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=MOST), requires = "frames")]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=MAX_FRAME), requires = "frames")]
     frame: Option<u32>,
 }
 
@@ -46,11 +46,11 @@ pub struct Frame {
 }
 
 fn range(text: &str) -> Result<Range, String> {
-    let number = |text: &str| text.parse().ok().filter(|number| (0..=MOST).contains(number));
+    let number = |text: &str| text.parse().ok().filter(|number| (0..=MAX_FRAME).contains(number));
     let ends = text.split_once("..").and_then(|(first, last)| number(first).zip(number(last)));
     let ends = ends.filter(|(first, last)| first <= last);
     ends.map(|(first, last)| Range(first..=last))
-        .ok_or_else(|| format!("give the first and the last frame as `1..240`, each up to {MOST}"))
+        .ok_or_else(|| format!("give the first and the last frame as `1..240`, each up to {MAX_FRAME}"))
 }
 
 impl Args {

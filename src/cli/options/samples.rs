@@ -93,25 +93,25 @@ impl Args {
 }
 
 fn samples(text: &str) -> Result<Samples, String> {
-    let number = |text: &str| text.parse().ok().filter(|number| (1..=Sampler::MOST).contains(number));
+    let number = |text: &str| text.parse().ok().filter(|number| (1..=Sampler::MAX_SAMPLES).contains(number));
     let Some((least, most)) = text.split_once("..") else {
-        return number(text)
-            .map(Samples::Fixed)
-            .ok_or_else(|| format!("give a whole number from 1 to {}, or two as `4..64`", Sampler::MOST));
+        return number(text).map(Samples::Fixed).ok_or_else(|| {
+            format!("give a whole number from 1 to {}, or two as `4..64`", Sampler::MAX_SAMPLES)
+        });
     };
     match (number(least), number(most)) {
         (Some(least), Some(most)) if least < most && least.is_power_of_two() && most.is_power_of_two() => {
             Ok(Samples::From(least, most))
         }
         (Some(least), Some(most)) if least < most => {
-            let near = |number: u32| (number.next_power_of_two()).min(Sampler::MOST);
+            let near = |number: u32| (number.next_power_of_two()).min(Sampler::MAX_SAMPLES);
             Err(format!("both must be powers of two, such as `{}..{}`", near(least), near(most)))
         }
         (Some(least), Some(most)) if least > most => {
             Err("the smaller number comes first, such as `4..64`".to_owned())
         }
         (Some(same), Some(_)) => Err(format!("for the same number in all pixels, give `{same}`")),
-        _ => Err(format!("give two powers of two from 1 to {} as `4..64`", Sampler::MOST)),
+        _ => Err(format!("give two powers of two from 1 to {} as `4..64`", Sampler::MAX_SAMPLES)),
     }
 }
 

@@ -134,7 +134,7 @@ pub fn with_truth<T>(
     let exact_model = exact()?;
     let mut exact = Plan::new(&exact_model);
     let samples = match plan.camera.adaptive {
-        None => (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST),
+        None => (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MAX_SAMPLES),
         Some(adaptive) => {
             // Samples of their own, since a pixel may have taken as many.
             exact.camera.scramble = SCRAMBLE;

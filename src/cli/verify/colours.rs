@@ -21,7 +21,7 @@ pub struct Args {
     /// With --colours, the number of samples per pixel; by default that of the scene's camera
     #[arg(
         long, value_name = "N", requires = "colours",
-        value_parser = whole::<u32>(1..=Sampler::MOST)
+        value_parser = whole::<u32>(1..=Sampler::MAX_SAMPLES)
     )]
     samples: Option<u32>,
     /// With --colours, stop after this time, such as 90s, 5m or 1.5h, and report the pixels proven so far

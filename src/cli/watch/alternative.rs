@@ -26,7 +26,7 @@ impl Override {
     /// Finds an accuracy by its name, or a number of samples.
     pub fn named(name: &str) -> Option<Self> {
         let accuracy = Accuracy::all().into_iter().find(|accuracy| accuracy.option().name == name);
-        let samples = || name.parse().ok().filter(|samples| (1..=Sampler::MOST).contains(samples));
+        let samples = || name.parse().ok().filter(|samples| (1..=Sampler::MAX_SAMPLES).contains(samples));
         accuracy.map(Self::Accuracy).or_else(|| samples().map(Self::Samples))
     }
 }

@@ -1,13 +1,13 @@
 //! What a scene needs, decided once before any ray is traced, so that rendering can leave out everything else.
 
-mod alike;
 pub mod depth;
 pub mod needs;
+mod same_look;
 mod shut_out;
 
-use alike::Alike;
 use depth::{ContinuationBounds, Depth};
 use needs::{Needs, UnlitReason};
+use same_look::SameLook;
 pub(crate) use shut_out::ShutOut;
 use shut_out::{Objects, shut_out};
 
@@ -39,7 +39,7 @@ pub struct Plan<'m> {
     /// The objects with bounds, if there are at least [`TREE`].
     pub(crate) tree: Option<Bvh>,
     /// The objects that look the same, where there are many and no ray continues.
-    pub(crate) alike: Option<Alike>,
+    pub(crate) same_look: Option<SameLook>,
     /// Whether any object that is needed is transparent, so that shadows may be partial.
     pub(crate) has_glass: bool,
     /// Whether any object absorbs light inside.
@@ -123,14 +123,14 @@ impl<'m> Plan<'m> {
         let costly = depth.as_ref().and_then(|_| CostlyObjects::of(objects));
         let bounces = usize::MAX;
         let is_simple = tree.is_some() && depth.is_none() && !has_glass && !has_media;
-        let alike = if is_simple { Alike::of(model) } else { None };
+        let same_look = if is_simple { SameLook::of(model) } else { None };
         Self {
             model,
             camera,
             unbounded,
             bounded,
             tree,
-            alike,
+            same_look,
             has_glass,
             has_media,
             features,

@@ -22,8 +22,8 @@ pub struct RayStats {
     sampled: [u64; SAMPLE_COUNTS],
 }
 
-/// The number of possible sample counts of a pixel: the powers of two up to [`Sampler::MOST`].
-const SAMPLE_COUNTS: usize = Sampler::MOST.ilog2() as usize + 1;
+/// The number of possible sample counts of a pixel: the powers of two up to [`Sampler::MAX_SAMPLES`].
+const SAMPLE_COUNTS: usize = Sampler::MAX_SAMPLES.ilog2() as usize + 1;
 
 /// The pixels with proven bounds of their colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -39,7 +39,7 @@ pub(super) static PIXELDIM: Pparm<[i64; 2]> =
 
 pub(super) static SAMPLES: Pparm<i64> =
     Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
-        .between(1.0, Sampler::MOST as f64)
+        .between(1.0, Sampler::MAX_SAMPLES as f64)
         .not_dumped();
 
 pub(super) static ACCURACY: Pparm<Accuracy> =

@@ -30,7 +30,7 @@ named!(Sampler { Sobol => "sobol", Random => "random" });
 
 impl Sampler {
     /// The maximum number of samples per pixel: the length of the sequence of `sobol_burley`.
-    pub const MOST: u32 = 1 << 16;
+    pub const MAX_SAMPLES: u32 = 1 << 16;
 }
 
 /// The number that scrambles the sequences of an image whose samples must differ from those of a render.
@@ -301,7 +301,7 @@ mod tests {
     fn samples_of_many_lanes_are_those_of_single_ones() {
         let pixels = [0, 1, 639, 307_199, 0x7fff_ffff, u32::MAX];
         for sampler in [Sampler::Sobol, Sampler::Random] {
-            let samples: Vec<_> = (0..Sampler::MOST)
+            let samples: Vec<_> = (0..Sampler::MAX_SAMPLES)
                 .map(|index| Sample {
                     sampler,
                     index,

@@ -26,7 +26,7 @@ pub struct Sensor {
     pub camera: AnyCamera,
     /// The image's width and height in pixels.
     pub pixels: [usize; 2],
-    /// The number of primary rays per pixel, from 1 to [`Sampler::MOST`].
+    /// The number of primary rays per pixel, from 1 to [`Sampler::MAX_SAMPLES`].
     pub samples: u32,
     /// The rule by which a pixel takes more primary rays than `samples`; `None` if all take the same number.
     pub adaptive: Option<Adaptive>,

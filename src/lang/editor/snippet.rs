@@ -7,7 +7,7 @@ use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::entity;
 
 /// The maximum number of alternatives of a placeholder.
-const MOST: usize = 30;
+const MAX_CHOICES: usize = 30;
 
 /// A text with placeholders, numbered from 1.
 pub struct Snippet<'v> {
@@ -43,7 +43,7 @@ impl<'v> Snippet<'v> {
                 .replace(',', "\\,")
                 .replace('|', "\\|")
         };
-        let all: Vec<_> = all.iter().take(MOST).map(escaped).collect();
+        let all: Vec<_> = all.iter().take(MAX_CHOICES).map(escaped).collect();
         self.text += &format!("${{{}|{}|}}", self.places, all.join(","));
     }
 

@@ -8,8 +8,8 @@ use super::missing::Missing;
 use super::names::{Names, placeholder};
 use super::notes;
 use super::options::ReadOptions;
+use super::pack_valid::{Packed, ValidPacker};
 use super::parsed::{Parsed, Word};
-use super::quick::{Packed, Quick};
 use super::report::Report;
 use super::statements::Parser;
 use crate::registry::Registry;
@@ -110,7 +110,7 @@ pub(super) struct Check<'r, 't> {
     /// The warning about colours from 0 to 255, if any.
     pub(super) levels: Option<Fault>,
     pub(super) background: Option<(usize, Arc<dyn Background>)>,
-    quick: Quick<'r>,
+    packer: ValidPacker<'r>,
 }
 
 impl<'r, 't> Check<'r, 't> {
@@ -149,7 +149,7 @@ impl<'r, 't> Check<'r, 't> {
             lights: Vec::new(),
             levels: None,
             background: None,
-            quick: Quick::new(registry),
+            packer: ValidPacker::new(registry),
         }
     }
 }
@@ -160,7 +160,7 @@ impl Check<'_, '_> {
         let mut rest = parsed;
         while let Some(first) = rest.first() {
             // Entities that others can refer to, and types, are defined before the entities that use them are checked.
-            let waiting = rest.iter().take_while(|parsed| self.quick.waits(&self.store, parsed)).count();
+            let waiting = rest.iter().take_while(|parsed| self.packer.waits(&self.store, parsed)).count();
             if waiting == 0 {
                 self.entity(first);
                 rest = &rest[1..];
@@ -169,26 +169,26 @@ impl Check<'_, '_> {
             let (run, others) = rest.split_at(waiting);
             rest = others;
             if run.len() <= PIECE {
-                let mut quick = replace(&mut self.quick, Quick::new(self.registry));
-                quick.check(&self.names, &self.store, run);
-                self.take(run, &quick);
-                self.quick = quick;
+                let mut packer = replace(&mut self.packer, ValidPacker::new(self.registry));
+                packer.check(&self.names, &self.store, run);
+                self.take(run, &packer);
+                self.packer = packer;
                 continue;
             }
             let (registry, names, store) = (self.registry, &self.names, &self.store);
             let pieces: Vec<_> = run.chunks(PIECE).collect();
             let checked = parallel::map(pieces.len(), |piece| {
-                let mut quick = Quick::new(registry);
-                quick.check(names, store, pieces[piece]);
-                quick
+                let mut packer = ValidPacker::new(registry);
+                packer.check(names, store, pieces[piece]);
+                packer
             });
-            pieces.into_iter().zip(&checked).for_each(|(run, quick)| self.take(run, quick));
+            pieces.into_iter().zip(&checked).for_each(|(run, packer)| self.take(run, packer));
         }
     }
 
     /// Takes over checked entities. An entity with something to report is checked again.
-    fn take(&mut self, parsed: &[&Parsed<'_>], quick: &Quick<'_>) {
-        for (parsed, packed) in parsed.iter().zip(quick.packed()) {
+    fn take(&mut self, parsed: &[&Parsed<'_>], packer: &ValidPacker<'_>) {
+        for (parsed, packed) in parsed.iter().zip(packer.packed()) {
             match packed {
                 None => self.entity(parsed),
                 Some(Packed { entity, hash, bytes }) => {

@@ -1,8 +1,7 @@
 //! Reads a scene's text as a [`Model`], or reports all its faults.
 
-mod alike;
-mod astray;
 mod attributes;
+mod black_scene;
 mod build;
 mod check;
 mod encoding;
@@ -16,6 +15,7 @@ mod levels;
 mod listed;
 mod located;
 mod machine;
+mod misplaced;
 mod missing;
 mod names;
 pub(crate) mod notes;
@@ -24,12 +24,13 @@ mod objects;
 mod older;
 mod only_rays;
 mod options;
+mod pack_valid;
 pub(crate) mod parsed;
 mod parts;
-mod quick;
 mod repeated;
 pub(crate) mod report;
 mod rounds;
+mod same_words;
 mod sets;
 mod sources;
 mod statement;
@@ -39,7 +40,6 @@ pub(crate) mod tokens;
 mod toml;
 mod toml_document;
 mod toml_faults;
-mod unseen;
 mod values;
 
 pub use fault::{Fault, Place, Places, Severity};
@@ -166,7 +166,7 @@ pub fn model_of_shape(registry: &Registry, shape: impl Into<AnyShape>) -> Result
 
 /// Tells whether nothing in a scene is visible, like the warning of the reader.
 pub fn is_black(model: &Model) -> bool {
-    unseen::warning(model).is_some()
+    black_scene::warning(model).is_some()
 }
 
 /// Checks that the program has entity types.
@@ -321,8 +321,8 @@ fn finish(
     }
     match model {
         Some(model) if !report.is_fatal() => {
-            let unseen = if only_rays { None } else { unseen::warning(&model) };
-            unseen.into_iter().for_each(|warning| report.add(warning));
+            let black = if only_rays { None } else { black_scene::warning(&model) };
+            black.into_iter().for_each(|warning| report.add(warning));
             Ok(Loaded { model, warnings: report.into_owned(), building, places })
         }
         _ => Err(report.into_owned()),

@@ -1,12 +1,12 @@
 //! The grammar of the notes' scene language: `entity-type name { attribute values ... }`, one word after another. The
 //! reader, `fmt` and editors share it.
 
-use super::alike::Alike;
 use super::fault::Fault;
 use super::guesses::{Tables, is_value, looks_like_number};
 use super::keyword::Keyword;
 use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
+use super::same_words::SameWords;
 use super::tokens::{Token, TokenForm, Tokens};
 use crate::registry::Registry;
 use std::borrow::Cow;
@@ -180,16 +180,16 @@ impl<'a, 'r> Grammar<'a, 'r> {
 
     /// Reads entities with the same words as those in `memory`, in their place, as far as possible. Returns their
     /// number.
-    pub fn alike(&mut self, memory: &mut [Option<Parsed<'a>>]) -> usize {
+    pub fn same_words(&mut self, memory: &mut [Option<Parsed<'a>>]) -> usize {
         let Some(first) = self.token() else { return 0 };
         let (mut end, mut last, mut count) = (first.start, None, 0);
         while let Some(Some(entity)) = memory.get_mut(count)
-            && let Some(alike) = entity.become_alike(self.tokens.text, end)
+            && let Some(same) = entity.take_same_words(self.tokens.text, end)
         {
-            (end, count) = (alike.body.end + 1, count + 1);
-            last = Some(alike);
+            (end, count) = (same.body.end + 1, count + 1);
+            last = Some(same);
         }
-        if let Some(Alike { kind, body }) = last {
+        if let Some(SameWords { kind, body }) = last {
             self.go_to(end);
             self.table = self.tables.named(self.registry, &self.tokens.text[kind.clone()]);
             (self.before, self.body) = (body.end..end, body);

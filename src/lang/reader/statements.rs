@@ -82,9 +82,9 @@ impl<'a> Parser<'a, '_> {
                 return 0;
             }
             if self.rounds.is_plain() {
-                let alike = self.grammar.alike(&mut parsed[count..]);
-                if alike > 0 {
-                    count += alike;
+                let same = self.grammar.same_words(&mut parsed[count..]);
+                if same > 0 {
+                    count += same;
                     continue;
                 }
             }

@@ -1,8 +1,8 @@
 //! Reads the images of textures.
 
-use super::astray;
 use super::check::{Check, Source, place_of};
 use super::fault::{Fault, Severity};
+use super::misplaced;
 use std::collections::BTreeSet;
 use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
@@ -48,7 +48,7 @@ impl Check<'_, '_> {
                 let file = files.next();
                 let near = match file.as_ref().map(|(_, datum)| datum) {
                     Some(Datum::Word(written)) if is_told && texture.is_missing() => {
-                        astray::image(&self.setting.folder, written)
+                        misplaced::image(&self.setting.folder, written)
                     }
                     _ => None,
                 };

@@ -35,9 +35,9 @@ impl Axis {
 
     /// Returns the positions of the tick marks, in pixels, and their labels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        const MOST: f64 = 9.0;
+        const MAX_LABELS: f64 = 9.0;
         let decades = self.high - self.low;
-        let step = (decades / MOST).ceil().max(1.0) as i32;
+        let step = (decades / MAX_LABELS).ceil().max(1.0) as i32;
         let steps: &[f64] = if decades < 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let (first, last) = (self.low.floor() as i32, self.high.ceil() as i32);
         (first..=last)

@@ -39,7 +39,7 @@ const REST: u32 = 128;
 const FIRST: u32 = 64;
 
 /// The greatest number of samples for all pixels together.
-const MOST: usize = 4_000_000;
+const MAX_SAMPLES: usize = 4_000_000;
 
 /// The part of the goal below which the bound on missed things should be.
 const WANTED: f64 = 0.15;
@@ -151,7 +151,7 @@ impl SmallThings {
         let cost = |pixel: &SmallPixel, count: u32| 2 * pixel.cells.len() * count as usize;
         let mut taken: usize =
             self.pixels.iter().map(|pixel| 2 * REST as usize + cost(pixel, pixel.first())).sum();
-        if taken > MOST {
+        if taken > MAX_SAMPLES {
             self.is_measured = false;
             return Ok(());
         }
@@ -174,12 +174,12 @@ impl SmallThings {
                 .iter()
                 .zip(&self.pixels)
                 .enumerate()
-                .filter(|(_, (open, pixel))| **open > least && 2 * pixel.count <= Sampler::MOST)
+                .filter(|(_, (open, pixel))| **open > least && 2 * pixel.count <= Sampler::MAX_SAMPLES)
                 .map(|(index, (_, pixel))| (index, 2 * pixel.count))
                 .collect();
             let more: usize = wanted.iter().map(|(index, count)| cost(&self.pixels[*index], count / 2)).sum();
             taken += more;
-            if taken > MOST || progress.is_late() {
+            if taken > MAX_SAMPLES || progress.is_late() {
                 break;
             }
         }

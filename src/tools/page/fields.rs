@@ -53,7 +53,7 @@ pub(super) struct Field {
 }
 
 /// The maximum number of entities that a page lists.
-const MOST: usize = 1000;
+const MAX_FIELDS: usize = 1000;
 
 /// Returns the entities of a scene: the camera, the lights, the background, the materials and the objects.
 fn records(model: &Model) -> impl Iterator<Item = &Record> {
@@ -71,7 +71,7 @@ fn named(record: &Record) -> Named {
 /// Lists the entities of a scene that have numbers, or the first of them.
 pub fn all(model: &Model) -> impl Iterator<Item = Named> {
     let has_numbers = |record: &&Record| record.entity().attributes().any(is_number);
-    records(model).filter(has_numbers).take(MOST).map(named)
+    records(model).filter(has_numbers).take(MAX_FIELDS).map(named)
 }
 
 /// Returns the attributes of the object that the centre of a pixel shows; `None` where it shows none.

@@ -33,7 +33,7 @@ pub(super) struct Ahead {
 pub(super) const OBJECT: u32 = 1 << 31;
 
 /// The number of objects must be below this, because of the range of [`Ahead::place`].
-const MOST: usize = 1 << 29;
+const MAX_OBJECTS: usize = 1 << 29;
 
 /// The scratch space of searches, reused between them.
 #[derive(Default)]
@@ -65,7 +65,7 @@ impl Bvh {
     ///
     /// Panics for 2^29 boxes or more.
     pub fn of(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Self {
-        assert!(count < MOST, "{count} boxes are too many");
+        assert!(count < MAX_OBJECTS, "{count} boxes are too many");
         let build::Parts { mut nodes, mut objects } = build::build(count, bounds);
         nodes.shrink_to_fit();
         objects.shrink_to_fit();

@@ -14,9 +14,9 @@
 use super::arrays::VectorList;
 use super::context::{PrimaryScratch, Scratch, Tracer};
 use super::estimate::{AdaptiveScratch, Estimate, RayResults, RaySummary, SampleRun};
+use super::path_hash::PathHashes;
 use super::ray_group::RayGroup;
 use super::sampled;
-use super::trail::PathHashes;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;
 use crate::render::observer::{Count, TraceObserver};
@@ -83,7 +83,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             count < CROSSED_SAMPLES && estimate.has_several_paths()
                 || count < FEATURE_SAMPLES && has_feature()
         };
-        self.scratch.trails.is_on = true;
+        self.scratch.path_hashes.is_on = true;
         let mut rays = Rays { tracer: self, group, seen, is_unbounded, runs: take(runs) };
         let is_careful = adaptive.error.is_some() && rays.tracer.is_light_spread_out();
         rays.begin(pixels, probes, grid, estimates, is_careful);
@@ -104,7 +104,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             // The objects that a pixel's rays have met matter only while all rays have met the same ones, or for small
             // objects.
             for has_several_paths in [false, true] {
-                rays.tracer.scratch.trails.is_on = has_features || !has_several_paths;
+                rays.tracer.scratch.path_hashes.is_on = has_features || !has_several_paths;
                 rays.take_samples(active, pixels, has_several_paths, estimates);
             }
             active.retain(|of| {
@@ -122,7 +122,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             });
         }
         *runs = rays.runs;
-        self.scratch.trails.is_on = false;
+        self.scratch.path_hashes.is_on = false;
         for (pixel, estimate) in estimates.iter().enumerate() {
             colours.set(pixel, estimate.colour());
             self.cut(estimate.missing / f64::from(estimate.count));
@@ -197,7 +197,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             samples.extend(rim_point(*column, *row), 0..1);
         }
         *are_probes = true;
-        tracer.look(group, len);
+        tracer.fill_primary(group, len);
         if *is_unbounded {
             group.ray_budget.fill(sampled::REST);
         }
@@ -210,7 +210,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
     /// Returns the results of the rays of some lanes.
     #[inline]
     fn found(&self, lanes: Range<usize>) -> RayResults<'_> {
-        let PathHashes { is_on, marks, distances, .. } = &self.tracer.scratch.trails;
+        let PathHashes { is_on, marks, distances, .. } = &self.tracer.scratch.path_hashes;
         let recorded = if *is_on { lanes.clone() } else { 0..0 };
         RayResults {
             colours: self.seen.view(lanes.end).part(lanes),
@@ -295,7 +295,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             x[lanes.clone()].iter_mut().for_each(|x| *x += *column as f64);
             y[lanes.clone()].iter_mut().for_each(|y| *y += *row as f64);
         }
-        tracer.look(group, len);
+        tracer.fill_primary(group, len);
         for SampleRun { lanes, ray_budget, .. } in &*runs {
             if let Some(budget) = ray_budget {
                 group.ray_budget[lanes.clone()].fill(*budget);

@@ -80,17 +80,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         &mut self,
         group: &RayGroup,
         surface: &Surface,
-        goes: &[u64],
+        continue_mask: &[u64],
         kind: RayKind,
         branch: &Branch,
     ) {
         let travelled = &surface.travelled[..group.padded()];
-        let is_far = |lane: &usize| goes[*lane] == 0 && rules::path_left(travelled[*lane]) < 0.0;
+        let is_far = |lane: &usize| continue_mask[*lane] == 0 && rules::path_left(travelled[*lane]) < 0.0;
         if self.depth >= self.plan.bounces || !(0..group.len).any(|lane| is_far(&lane)) {
             return;
         }
         let mut ends = vec![1; group.padded()];
-        group.leave_out(self.cpu, branch, travelled, &mut ends);
+        group.cull_faint(self.cpu, branch, travelled, &mut ends);
         let mirrors = |lane: usize| surface.look.is_some() || surface.specular.get(lane) != Rgb::ZERO;
         let matters = |lane: &usize| ends[*lane] != 0 && (kind == RayKind::Transmitted || mirrors(*lane));
         for lane in (0..group.len).filter(is_far).filter(matters) {

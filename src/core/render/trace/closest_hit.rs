@@ -78,8 +78,8 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
     pub(super) fn start(&self, group: &RayGroup, lane: usize) -> RoundedRay {
         let [x, y] = &self.scratch.places;
         let lens = |side: usize| self.scratch.lens[side].get(lane).copied().unwrap_or_default();
-        let look = || self.plan.camera.sight_through(x[lane], y[lane], DVec2::new(lens(0), lens(1)));
-        let sight = group.looks.then(look).or_else(|| group.sights.get(lane).cloned());
+        let sight = || self.plan.camera.sight_through(x[lane], y[lane], DVec2::new(lens(0), lens(1)));
+        let sight = group.looks.then(sight).or_else(|| group.sights.get(lane).cloned());
         RoundedRay { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 

@@ -3,10 +3,10 @@
 use super::arrays::{NARROW, VectorList};
 use super::draws::LightDraws;
 use super::estimate::AdaptiveScratch;
+use super::path_hash::PathHashes;
 use super::ray_group::{HitGroups, HitRecord, RayGroup};
-use super::round::TreeScratch;
 use super::surface::{Errors, Surface};
-use super::trail::PathHashes;
+use super::wave::TreeScratch;
 use crate::geometry::bvh::Stack;
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::PACKET_SIZE;
@@ -85,7 +85,7 @@ pub struct Scratch {
     /// lights, at the rim point whose number is the pixel of their sample.
     pub(super) are_probes: bool,
     /// The hashes of the current primary rays' paths.
-    pub(super) trails: PathHashes,
+    pub(super) path_hashes: PathHashes,
     /// The trees that grow under the free rules, unless they are in use.
     pub(super) trees: Option<Box<TreeScratch>>,
     /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
@@ -183,7 +183,7 @@ pub(super) struct ShadingScratch {
     /// The directions in which rays continue.
     pub dir: VectorList,
     /// 1 for each ray that continues, and 0 for the others.
-    pub goes: Vec<u64>,
+    pub continue_mask: Vec<u64>,
     /// The lanes of the rays that continue.
     pub lanes: Vec<u8>,
     /// The rays that continue.
@@ -191,7 +191,7 @@ pub(super) struct ShadingScratch {
     /// The colours that the rays that continue return.
     pub seen: VectorList,
     /// The colours that come back to all lanes, black for rays that do not continue.
-    pub behind: VectorList,
+    pub incoming: VectorList,
 }
 
 /// The scratch space of lights, used for one after the other.

@@ -44,7 +44,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if scatters || W::SEES {
             let around = aabb::around(cpu, points);
             for index in &self.plan.needs.lights {
-                self.shine(*index, group, surface, &around, &mut lighting, colours);
+                self.add_lamp(*index, group, surface, &around, &mut lighting, colours);
             }
             if scatters {
                 self.miss_shadows(group, surface);
@@ -75,7 +75,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 
     /// Adds the contribution of one light.
-    fn shine(
+    fn add_lamp(
         &mut self,
         index: usize,
         group: &mut RayGroup,
@@ -136,15 +136,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let shows_highlights = light.emitter().is_none_or(|emitter| emitter.has_highlights());
         let material = &self.model.objects[surface.index].material;
         let shininess = if shows_highlights { material.shininess } else { 0.0 };
-        light::shine(cpu, &lit, shininess, colours.resized(count));
-        if self.scratch.trails.is_on {
+        light::add_glints(cpu, &lit, shininess, colours.resized(count));
+        if self.scratch.path_hashes.is_on {
             let (is_shiny, has_tints) = (shininess != 0.0, uniform.is_some());
-            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, is_shiny, has_tints);
+            self.scratch.path_hashes.see_light(&group.camera[..group.len], index, &lit, is_shiny, has_tints);
         }
         if W::SEES {
             let mut alone = VectorList::default();
             alone.fill(count, Rgb::ZERO);
-            light::shine(cpu, &lit, shininess, alone.resized(count));
+            light::add_glints(cpu, &lit, shininess, alone.resized(count));
             self.observer
                 .see(Event::Light(index, LightOutcome::Shines { passed: tint, colour: alone.get(0) }));
         }

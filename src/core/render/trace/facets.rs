@@ -25,14 +25,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         let count = group.padded();
         if !surface.is_bent {
-            surface.unbent.copy(surface.normals.view(count));
+            surface.geometric_normals.copy(surface.normals.view(count));
             surface.is_bent = true;
         }
         for lane in 0..count {
             let camera = group.camera[lane.min(group.len - 1)];
             let Some(sample) = self.scratch.samples.get(usize::from(camera)) else { continue };
             let depth = match (group.places.get(lane), &self.scratch.trees) {
-                (Some(place), Some(trees)) => trees.round[*place as usize].depth,
+                (Some(place), Some(trees)) => trees.wave[*place as usize].depth,
                 _ => self.depth as u32,
             };
             let draw = if self.scratch.are_probes {
@@ -43,8 +43,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let dir = group.dir.get(lane);
             let normal = facing(surface.normals.get(lane), dir);
             surface.normals.set(lane, facet(normal, -dir, roughness * roughness, draw));
-            if lane < group.len && self.scratch.trails.is_on {
-                self.scratch.trails.see_facet(camera, draw);
+            if lane < group.len && self.scratch.path_hashes.is_on {
+                self.scratch.path_hashes.see_facet(camera, draw);
             }
         }
     }

@@ -1,10 +1,10 @@
-//! How the [trees](super::tree) of a packet of primary rays grow, round by round.
+//! How the [trees](super::tree) of a packet of primary rays grow, wave by wave.
 
 use super::arrays::VectorList;
 use super::context::{ShadingScratch, Tracer};
 use super::ray_group::RayGroup;
-use super::round::TreeScratch;
 use super::tree::{Budget, End, Ends, OpenRay, Tree};
+use super::wave::TreeScratch;
 use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::MAX_RAYS;
@@ -35,12 +35,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         group.ray_budget.fill(MAX_RAYS as u32);
         group.places.clear();
         group.places.extend(0..len as u32);
-        scratch.round.clear();
-        scratch.round.extend((0..len).map(OpenRay::primary));
-        scratch.begin_round();
+        scratch.wave.clear();
+        scratch.wave.extend((0..len).map(OpenRay::primary));
+        scratch.begin_wave();
         scratch.outcomes.iter_mut().for_each(|outcome| outcome.cost = MAX_RAYS as u32);
         self.scratch.trees = Some(scratch);
-        self.scratch.trails.is_mixed = true;
+        self.scratch.path_hashes.is_mixed = true;
         self.trace(group, colours);
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
         scratch.note(group, colours);
@@ -51,15 +51,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             for (tree, lane) in scratch.trees.iter_mut().zip(block.clone()) {
                 tree.begin(budgets[lane]);
             }
-            scratch.round.clear();
-            scratch.round.extend(block.clone().map(OpenRay::primary));
+            scratch.wave.clear();
+            scratch.wave.extend(block.clone().map(OpenRay::primary));
             scratch.outcomes.clear();
             scratch.outcomes.extend_from_slice(&first[block.clone()]);
-            while !scratch.round.is_empty() {
+            while !scratch.wave.is_empty() {
                 scratch.add(start, depth, &ends);
-                let TreeScratch { trees, round, .. } = &mut *scratch;
-                round.clear();
-                trees[..block.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, round));
+                let TreeScratch { trees, wave, .. } = &mut *scratch;
+                wave.clear();
+                trees[..block.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, wave));
                 scratch = self.follow(scratch, start);
             }
             for (tree, lane) in scratch.trees.iter().zip(block) {
@@ -78,17 +78,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.trees = Some(scratch);
     }
 
-    /// Follows the rays of a round. `first` is the lane of the first tree.
+    /// Follows the rays of a wave. `first` is the lane of the first tree.
     fn follow(&mut self, mut scratch: Box<TreeScratch>, first: usize) -> Box<TreeScratch> {
-        scratch.begin_round();
+        scratch.begin_wave();
         let (mut group, mut seen) = (take(&mut scratch.group), take(&mut scratch.seen));
         let mut order = take(&mut scratch.order);
         order.clear();
-        order.extend(0..scratch.round.len() as u32);
+        order.extend(0..scratch.wave.len() as u32);
         // The hits of rays of little weight are not recorded, as another sample's tree may have ended before them.
-        let records = self.scratch.trails.is_on;
+        let records = self.scratch.path_hashes.is_on;
         let kind = |place: u32| {
-            let OpenRay { object, weight, .. } = scratch.round[place as usize];
+            let OpenRay { object, weight, .. } = scratch.wave[place as usize];
             (object, records && weight.abs().max_element() >= HEAVY)
         };
         order.sort_by_key(|place| kind(*place));
@@ -101,32 +101,32 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let same = kinds[start..].iter().take(together).take_while(|other| **other == (object, is_heavy));
             let places = &order[start..start + same.count()];
             start += places.len();
-            self.scratch.trails.is_on = is_heavy;
+            self.scratch.path_hashes.is_on = is_heavy;
             scratch.gather(places, first, &mut group);
             let count = group.padded();
             let shape = &self.model.objects[object as usize].shape;
             group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);
-            self.begin_open(&scratch.round, places);
+            self.begin_open(&scratch.wave, places);
             self.scratch.trees = Some(scratch);
             self.trace(&mut group, &mut seen);
             scratch = self.scratch.trees.take().unwrap_or_default();
             scratch.note(&group, &seen);
         }
         self.depth -= 1;
-        self.scratch.trails.is_on = records;
+        self.scratch.path_hashes.is_on = records;
         (scratch.group, scratch.seen, scratch.order) = (group, seen, order);
         scratch
     }
 
     /// Reports rays that are followed together.
-    fn begin_open(&mut self, round: &[OpenRay], places: &[u32]) {
+    fn begin_open(&mut self, wave: &[OpenRay], places: &[u32]) {
         let of_kind =
-            |kind: RayKind| places.iter().filter(|place| round[**place as usize].kind == kind).count();
+            |kind: RayKind| places.iter().filter(|place| wave[**place as usize].kind == kind).count();
         for kind in [RayKind::Reflected, RayKind::Transmitted] {
             self.observer.count(Count::Rays(kind, of_kind(kind)));
         }
         if W::SEES {
-            let OpenRay { kind, weight, .. } = round[places[0] as usize];
+            let OpenRay { kind, weight, .. } = wave[places[0] as usize];
             self.observer.see(Event::Begin(match kind {
                 RayKind::Transmitted => RayPurpose::Transmitted { tint: weight, kept: 1.0 },
                 _ => RayPurpose::Reflected { specular: weight },
@@ -167,7 +167,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             };
             colours.set(lane, kept * colours.get(lane));
             let place = group.places[lane] as usize;
-            let before = scratch.round[place];
+            let before = scratch.wave[place];
             if before.depth as usize >= self.plan.bounces {
                 continue;
             }

@@ -58,7 +58,7 @@ pub(super) enum Colours<'c> {
 
 kernels! {
     /// Adds the light that reaches points, where it does.
-    pub(super) fn shine(lit: &LitPoints, shininess: f64) => colours {
+    pub(super) fn add_glints(lit: &LitPoints, shininess: f64) => colours {
         let (count, whole) = (lit.shines.len(), shininess as u32);
         let colours = colours.first(count);
         if shininess == 0.0 {
@@ -74,30 +74,30 @@ kernels! {
     }
 
     /// Marks the rays that continue from a surface, given the lengths of the paths to it, in world units.
-    pub(super) fn reach(travelled: &[f64], goes: &mut [u64]) {
-        let (count, travelled) = (goes.len(), &travelled[..goes.len()]);
+    pub(super) fn reach(travelled: &[f64], continue_mask: &mut [u64]) {
+        let (count, travelled) = (continue_mask.len(), &travelled[..continue_mask.len()]);
         for lane in 0..count {
-            goes[lane] = u64::from(rules::path_left(travelled[lane]) >= 0.0);
+            continue_mask[lane] = u64::from(rules::path_left(travelled[lane]) >= 0.0);
         }
     }
 
-    /// Clears `goes` for the rays that can return too little to be seen. `ray_budget` has the number of rays that
+    /// Clears `continue_mask` for the rays that can return too little to be seen. `ray_budget` has the number of rays that
     /// each ray may still cost; `None` where no ray has cost [`MANY`] yet.
-    pub(super) fn leave_out(
-        travelled: &[f64], path_weight: PathWeight, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
+    pub(super) fn cull_faint(
+        travelled: &[f64], path_weight: PathWeight, branch: &Branch, ray_budget: Option<&[u32]>, continue_mask: &mut [u64]
     ) {
-        let (count, PathWeight { weight, share }) = (goes.len(), path_weight);
+        let (count, PathWeight { weight, share }) = (continue_mask.len(), path_weight);
         let (faint, faint_alone) = (weight * branch.faint, weight * branch.faint_alone);
         let travelled = &travelled[..count];
         for lane in 0..count {
             let is_faint = faint < share * travelled[lane];
-            goes[lane] &= u64::from(!is_faint);
+            continue_mask[lane] &= u64::from(!is_faint);
         }
         if let Some(ray_budget) = ray_budget {
             let ray_budget = &ray_budget[..count];
             for lane in 0..count {
                 let is_faint = (ray_budget[lane] < FEW) & (faint_alone < travelled[lane]);
-                goes[lane] &= u64::from(!is_faint);
+                continue_mask[lane] &= u64::from(!is_faint);
             }
         }
     }
@@ -110,20 +110,20 @@ kernels! {
     /// Reflects directions. Marks the rays that continue: those whose path is not too long, and that hit a point whose
     /// specular reflectivity is not 0.
     pub(super) fn mirror(
-        dir: View, normals: View, specular: Colours, travelled: &[f64], goes: &mut [u64]
+        dir: View, normals: View, specular: Colours, travelled: &[f64], continue_mask: &mut [u64]
     ) => out {
         let count = dir.len();
         let (normals, mut out) = (normals.first(count), out.first(count));
-        let (travelled, goes) = (&travelled[..count], &mut goes[..count]);
+        let (travelled, continue_mask) = (&travelled[..count], &mut continue_mask[..count]);
         for lane in 0..count {
             let (dir, normal) = (dir.get(lane), normals.get(lane));
             out.set(lane, rules::mirrored(dir.to_array(), normal.to_array()).into());
-            goes[lane] = u64::from(rules::path_left(travelled[lane]) >= 0.0);
+            continue_mask[lane] = u64::from(rules::path_left(travelled[lane]) >= 0.0);
         }
         if let Colours::Each(specular) = specular {
             let specular = specular.first(count);
             for lane in 0..count {
-                goes[lane] &= is_any(specular.get(lane));
+                continue_mask[lane] &= is_any(specular.get(lane));
             }
         }
     }

@@ -22,14 +22,14 @@ mod light_points;
 mod media;
 mod mixed;
 mod occlusion;
+mod path_hash;
 mod ray_group;
-mod round;
 mod sampled;
 mod shade;
 mod surface;
-mod trail;
 mod transmittance;
 mod tree;
+mod wave;
 
 pub use context::{Scratch, Tracer};
 pub use exact::primary_distance;
@@ -73,7 +73,7 @@ pub fn within_budgets(
     scratch.places = [x.collect(), y.collect()];
     scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
     let Scratch { places, lens, .. } = &mut scratch;
-    group.look(Cpu::best(), &plan.camera, plan.depth.as_ref(), places, lens, pixels.len());
+    group.fill_primary(Cpu::best(), &plan.camera, plan.depth.as_ref(), places, lens, pixels.len());
     group.ray_budget[..budgets.len()].copy_from_slice(budgets);
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
     tracer.colours(&mut group, &mut colours);
@@ -262,7 +262,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             for ((place, _), (x, y)) in part.iter().zip(x.iter_mut().zip(y)) {
                 (*x, *y) = (place.x, place.y);
             }
-            self.look(group, part.len());
+            self.fill_primary(group, part.len());
             self.colours(group, seen);
             all.extend((0..part.len()).map(|lane| seen.get(lane)));
         }
@@ -278,7 +278,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
             let [x, y] = &mut self.scratch.places;
             sensor::middles(self.cpu, pixels, x, y);
-            self.look(group, pixels.len());
+            self.fill_primary(group, pixels.len());
             self.colours(group, seen);
             colours.copy_at(first, seen.view(pixels.len()));
             if self.scratch.any_missing {
@@ -299,7 +299,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let len = PACKET_SIZE.min(samples * pixels.len() - count);
             let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
             camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
-            self.look(group, len);
+            self.fill_primary(group, len);
             self.colours(group, seen);
             let mut lanes = 0..len;
             while !lanes.is_empty() {
@@ -322,7 +322,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 
     /// Fills a group with the primary rays through the first `len` image positions, with their samples.
-    fn look(&mut self, group: &mut RayGroup, len: usize) {
+    fn fill_primary(&mut self, group: &mut RayGroup, len: usize) {
         let (cpu, plan) = (self.cpu, self.plan);
         let Scratch { places, lens, samples, are_probes, .. } = &mut *self.scratch;
         lens.iter_mut().for_each(Vec::clear);
@@ -335,7 +335,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 sample::on_lenses(cpu, samples, x, y);
             }
         }
-        group.look(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
+        group.fill_primary(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
     }
 
     /// Reports a pixel that lacks light. `missing` bounds that light, in any channel; under the free rules, it is the
@@ -358,8 +358,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if let Some(lighting) = &mut self.scratch.lighting {
             lighting.draws.begin();
         }
-        if self.scratch.trails.is_on {
-            self.scratch.trails.begin(group.len);
+        if self.scratch.path_hashes.is_on {
+            self.scratch.path_hashes.begin(group.len);
         }
         if W::SEES {
             self.observer.see(Event::Begin(RayPurpose::Primary));

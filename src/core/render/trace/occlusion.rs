@@ -297,9 +297,9 @@ kernels! {
             }
         }
         for lane in 0..count {
-            let goes = t_max[lane] > 0.0;
-            t_max[lane] = if goes { t_max[lane] } else { 0.0 };
-            blocked[lane] = if goes { 0 } else { NOT_CAST };
+            let is_cast = t_max[lane] > 0.0;
+            t_max[lane] = if is_cast { t_max[lane] } else { 0.0 };
+            blocked[lane] = if is_cast { 0 } else { NOT_CAST };
         }
         for lane in 0..count {
             ray_budget[lane] -= u32::from(t_max[lane] > 0.0);

@@ -49,7 +49,7 @@ pub(super) struct RayGroup {
     /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
     /// sample.
     pub camera: Vec<u8>,
-    /// Under the free rules, the number of each ray in its round; empty under the notes' rules.
+    /// Under the free rules, the number of each ray in its wave; empty under the notes' rules.
     pub places: Vec<u32>,
     /// The index of the object that the rays leave.
     pub origin_object: Option<usize>,
@@ -90,7 +90,7 @@ impl RayGroup {
 
     /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom,
     /// and through as many points of the lens, in its radius, if there are any.
-    pub fn look(
+    pub fn fill_primary(
         &mut self,
         cpu: Cpu,
         camera: &Sensor,
@@ -146,14 +146,14 @@ impl RayGroup {
         self.looks = false;
     }
 
-    /// Clears `goes` for the rays that would return too little to be seen at their path lengths.
-    pub fn leave_out(&self, cpu: Cpu, branch: &Branch, travelled: &[f64], goes: &mut [u64]) {
+    /// Clears `continue_mask` for the rays that would return too little to be seen at their path lengths.
+    pub fn cull_faint(&self, cpu: Cpu, branch: &Branch, travelled: &[f64], continue_mask: &mut [u64]) {
         let Some(path_weight) = self.path_weight.filter(|_| branch.faint_alone != f64::INFINITY) else {
             return;
         };
-        let ray_budget = &self.ray_budget[..goes.len()];
+        let ray_budget = &self.ray_budget[..continue_mask.len()];
         let ray_budget = (light::fewest(cpu, ray_budget) < light::FEW).then_some(ray_budget);
-        light::leave_out(cpu, travelled, path_weight, branch, ray_budget, goes);
+        light::cull_faint(cpu, travelled, path_weight, branch, ray_budget, continue_mask);
     }
 
     /// Updates the light that the rays can add to a pixel when they continue along a branch of a surface.

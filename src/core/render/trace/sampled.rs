@@ -48,7 +48,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             for index in 0..camera.samples {
                 let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
                 camera.scatter_each(self.cpu, pixels, index, drawn, [&mut x[..len], &mut y[..len]]);
-                self.look(group, len);
+                self.fill_primary(group, len);
                 for (budget, (_, missing)) in group.ray_budget.iter_mut().zip(&sums) {
                     *budget = if *missing == f64::INFINITY { REST } else { *budget };
                 }

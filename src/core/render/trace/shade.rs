@@ -25,21 +25,22 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut level = self.scratch.levels.pop().unwrap_or_default();
         let HitScratch { hits, parts, part, looks, near, far, shading, seen } = &mut *level;
         self.closest(group, None, hits);
-        let met = &hits.hit_ids[..group.len];
+        let hit_ids = &hits.hit_ids[..group.len];
         shading.surface.objects.clear();
-        if met[0] != 0 && closest_hit::is_one(self.cpu, met) {
-            self.shade(group, (&hits.near, &hits.far), met[0] as usize - 1, shading, colours);
+        if hit_ids[0] != 0 && closest_hit::is_one(self.cpu, hit_ids) {
+            self.shade(group, (&hits.near, &hits.far), hit_ids[0] as usize - 1, shading, colours);
         } else {
             colours.resized(group.padded());
-            let alike = self.plan.alike.as_ref();
-            let alike = alike.filter(|_| !self.scratch.trails.is_on && mixed::are_short(met));
-            match alike {
-                Some(alike) => {
+            let same_look = self.plan.same_look.as_ref();
+            let same_look =
+                same_look.filter(|_| !self.scratch.path_hashes.is_on && mixed::are_short(hit_ids));
+            match same_look {
+                Some(same_look) => {
                     looks.clear();
-                    looks.extend(met.iter().map(|id| alike.look(*id)));
+                    looks.extend(hit_ids.iter().map(|id| same_look.look_up(*id)));
                     parts.begin(looks);
                 }
-                None => parts.begin(met),
+                None => parts.begin(hit_ids),
             }
             while let Some((id, lanes)) = parts.next() {
                 if id == 0 {
@@ -52,9 +53,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     }
                     continue;
                 }
-                let object = met[usize::from(lanes[0])] as usize - 1;
-                if alike.is_some() {
-                    mixed::list(met, lanes, &mut shading.surface.objects);
+                let object = hit_ids[usize::from(lanes[0])] as usize - 1;
+                if same_look.is_some() {
+                    mixed::list(hit_ids, lanes, &mut shading.surface.objects);
                 }
                 part.gather(group, lanes);
                 gather(near, &hits.near, lanes, part.padded());
@@ -152,7 +153,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let interaction = SurfaceInteraction {
                 points: surface.points.resized(count),
                 normals: surface.normals.resized(count),
-                geometric_normals: surface.unbent.resized(count),
+                geometric_normals: surface.geometric_normals.resized(count),
                 sides: resized(&mut surface.sides, count),
                 cosines: resized(&mut surface.cosines, count),
                 travelled,
@@ -164,11 +165,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         };
         self.pass_media(group, distances, surface);
         let window = if shader.sees().patch { self.plan.camera.window() } else { None };
-        // Rays that continue from others are those of a round.
+        // Rays that continue from others are those of a wave.
         let open = self.scratch.trees.as_ref().filter(|_| self.depth != 0);
         let are_shown = |lane: usize| match open {
             None => self.depth == 0,
-            Some(trees) => trees.round[group.places[lane.min(group.len - 1)] as usize].shows_patches,
+            Some(trees) => trees.wave[group.places[lane.min(group.len - 1)] as usize].shows_patches,
         };
         let patches =
             window.map(|window| SeenPatches { dir: group.dir.view(count), window, are_shown: &are_shown });
@@ -186,10 +187,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
-        if self.scratch.trails.is_on {
+        if self.scratch.path_hashes.is_on {
             let nearest = (self.depth == 0).then_some(distances);
             let shader = surface.look.is_none().then_some((&**shader, surface.points(count)));
-            self.scratch.trails.meet(cpu, &group.camera[..group.len], index, nearest, shader);
+            self.scratch.path_hashes.meet(cpu, &group.camera[..group.len], index, nearest, shader);
         }
         let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if let Some(errors) = mixed_errors {
@@ -219,26 +220,27 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Begin(RayPurpose::Transmitted { tint, kept }));
         }
         let branch = self.plan.continuation(surface.index).through;
-        let (travelled, goes) = (&surface.travelled[..count], resized(&mut shading.goes, count));
-        light::reach(self.cpu, travelled, goes);
-        group.leave_out(self.cpu, &branch, travelled, goes);
-        self.end_bounces(goes);
+        let (travelled, continue_mask) =
+            (&surface.travelled[..count], resized(&mut shading.continue_mask, count));
+        light::reach(self.cpu, travelled, continue_mask);
+        group.cull_faint(self.cpu, &branch, travelled, continue_mask);
+        self.end_bounces(continue_mask);
         shading.dir.copy(group.dir.view(count));
         surface.flip_sides(count);
         self.trace_secondary(group, shading, RayKind::Transmitted, branch);
         let surface = &mut shading.surface;
         surface.flip_sides(count);
         for lane in 0..group.len {
-            let (own, behind) = (colours.get(lane), shading.behind.get(lane));
+            let (own, incoming) = (colours.get(lane), shading.incoming.get(lane));
             let tint = surface.tint(object, lane);
-            colours.set(lane, rules::transmitted(own, Rgb::splat(kept), behind, tint));
+            colours.set(lane, rules::transmitted(own, Rgb::splat(kept), incoming, tint));
         }
     }
 
     /// Ends all rays where a measurement limits the number of bounces.
-    fn end_bounces(&self, goes: &mut [u64]) {
+    fn end_bounces(&self, continue_mask: &mut [u64]) {
         if self.depth >= self.plan.bounces {
-            goes.fill(0);
+            continue_mask.fill(0);
         }
     }
 
@@ -249,7 +251,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         shading: &mut ShadingScratch,
         colours: &mut VectorList,
     ) {
-        let ShadingScratch { surface, goes, dir, .. } = shading;
+        let ShadingScratch { surface, continue_mask, dir, .. } = shading;
         if W::SEES {
             let specular = match surface.look {
                 Some(look) => look.specular,
@@ -259,23 +261,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         let (cpu, count) = (self.cpu, group.padded());
         let (normals, specular) = (surface.normals.view(count), surface.mirrors(count));
-        let (travelled, goes) = (&surface.travelled[..count], resized(goes, count));
+        let (travelled, continue_mask) = (&surface.travelled[..count], resized(continue_mask, count));
         let dir = dir.resized(count);
         let branch = self.plan.continuation(surface.index).mirrored;
-        light::mirror(cpu, group.dir.view(count), normals, specular, travelled, goes, dir);
+        light::mirror(cpu, group.dir.view(count), normals, specular, travelled, continue_mask, dir);
         if surface.is_bent {
             surface.keep_before(group.dir.view(count), &mut shading.dir);
         }
-        group.leave_out(cpu, &branch, travelled, goes);
-        self.end_bounces(goes);
-        let do_all = goes[0] != 0 && closest_hit::is_one(cpu, goes);
+        group.cull_faint(cpu, &branch, travelled, continue_mask);
+        self.end_bounces(continue_mask);
+        let do_all = continue_mask[0] != 0 && closest_hit::is_one(cpu, continue_mask);
         if do_all && group.len <= self.max_packet() {
             self.trace_all_secondary(group, shading, branch);
         } else {
             self.trace_secondary(group, shading, RayKind::Reflected, branch);
         }
         let specular = shading.surface.mirrors(count);
-        light::reflect(cpu, specular, shading.behind.view(count), colours.resized(count));
+        light::reflect(cpu, specular, shading.incoming.view(count), colours.resized(count));
     }
 
     /// Adds transmitted and reflected light, in the fractions that an interface decides.
@@ -307,10 +309,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             for lane in 0..count {
                 dir.set(lane, crossings[lane].onward.unwrap_or(DVec3::NEG_Z));
             }
-            self.go(group, shading, RayKind::Transmitted, branches.through, is_through);
+            self.trace_selected(group, shading, RayKind::Transmitted, branches.through, is_through);
             shading.surface.flip_sides(count);
             for lane in 0..group.len {
-                colours.set(lane, colours.get(lane) + tints[lane] * shading.behind.get(lane));
+                colours.set(lane, colours.get(lane) + tints[lane] * shading.incoming.get(lane));
             }
         }
 
@@ -338,16 +340,16 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 self.observer.see(Event::Begin(RayPurpose::Reflected { specular }));
             }
             shading.surface.mirror_rays(group.dir.view(group.padded()), &mut shading.dir);
-            self.go(group, shading, RayKind::Reflected, branch.reduced(number), is_its);
+            self.trace_selected(group, shading, RayKind::Reflected, branch.reduced(number), is_its);
             for lane in (0..group.len).filter(|lane| is_its(*lane)) {
-                let seen = crossings[lane].reflected * shading.behind.get(lane);
+                let seen = crossings[lane].reflected * shading.incoming.get(lane);
                 colours.set(lane, colours.get(lane) + seen);
             }
         }
     }
 
     /// Computes the light that returns along the rays that are chosen.
-    fn go(
+    fn trace_selected(
         &mut self,
         group: &mut RayGroup,
         shading: &mut ShadingScratch,
@@ -356,13 +358,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         is_chosen: impl Fn(usize) -> bool,
     ) {
         let count = group.padded();
-        let (travelled, goes) = (&shading.surface.travelled[..count], resized(&mut shading.goes, count));
-        light::reach(self.cpu, travelled, goes);
-        for (lane, goes) in goes.iter_mut().enumerate() {
-            *goes &= u64::from(is_chosen(lane));
+        let (travelled, continue_mask) =
+            (&shading.surface.travelled[..count], resized(&mut shading.continue_mask, count));
+        light::reach(self.cpu, travelled, continue_mask);
+        for (lane, mask) in continue_mask.iter_mut().enumerate() {
+            *mask &= u64::from(is_chosen(lane));
         }
-        group.leave_out(self.cpu, &branch, travelled, goes);
-        self.end_bounces(goes);
+        group.cull_faint(self.cpu, &branch, travelled, continue_mask);
+        self.end_bounces(continue_mask);
         self.trace_secondary(group, shading, kind, branch);
     }
 
@@ -375,10 +378,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         kind: RayKind,
         branch: Branch,
     ) {
-        let ShadingScratch { surface, dir, goes, lanes, secondary, seen, behind, .. } = shading;
-        let lanes = compact(&goes[..group.len], lanes);
+        let ShadingScratch { surface, dir, continue_mask, lanes, secondary, seen, incoming, .. } = shading;
+        let lanes = compact(&continue_mask[..group.len], lanes);
         if lanes.len() < group.len {
-            self.end_far(group, surface, goes, kind, &branch);
+            self.end_far(group, surface, continue_mask, kind, &branch);
         }
         if W::SEES && lanes.is_empty() {
             let is_far = rules::path_left(surface.travelled[0]) < 0.0;
@@ -387,14 +390,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         self.observer.count(Count::Rays(kind, lanes.len()));
         let rays = surface.secondary_rays(dir);
-        behind.fill(group.padded(), DVec3::ZERO);
+        incoming.fill(group.padded(), DVec3::ZERO);
         let max_packet = self.max_packet();
         self.depth += 1;
         for lanes in lanes.chunks(max_packet) {
             secondary.continue_from(group, &rays, lanes);
             secondary.branch(&branch);
             self.trace(secondary, seen);
-            behind.scatter(seen, lanes);
+            incoming.scatter(seen, lanes);
             group.charge(secondary, lanes);
         }
         self.depth -= 1;
@@ -403,12 +406,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Implements [`trace_secondary`](Self::trace_secondary) where all rays of the group are reflected. The rays are
     /// not needed here afterwards, so their arrays are swapped, not copied.
     fn trace_all_secondary(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
-        let ShadingScratch { surface, dir, secondary, behind, .. } = shading;
+        let ShadingScratch { surface, dir, secondary, incoming, .. } = shading;
         self.observer.count(Count::Rays(RayKind::Reflected, group.len));
         self.depth += 1;
         secondary.take(group, surface, dir);
         secondary.branch(&branch);
-        self.trace(secondary, behind);
+        self.trace(secondary, incoming);
         swap(&mut group.ray_budget, &mut secondary.ray_budget);
         self.depth -= 1;
     }

@@ -26,7 +26,7 @@ pub(super) struct Surface {
     /// The unit normals with which the points are shaded, flipped to face the rays where both sides are lit.
     pub normals: VectorList,
     /// The unit normals of the surface itself, flipped likewise, where `is_bent`.
-    pub unbent: VectorList,
+    pub geometric_normals: VectorList,
     /// Whether points may be shaded with other normals than those of the surface.
     pub is_bent: bool,
     /// The points as the object's shader sees them; empty where it sees only their positions.
@@ -82,7 +82,7 @@ impl Surface {
             if let Some(SeenPatches { dir, window: Window { start, spread, pixel }, are_shown }) = patches
                 && are_shown(lane)
             {
-                let normals = if shape.is_smooth() { &self.unbent } else { &self.normals };
+                let normals = if shape.is_smooth() { &self.geometric_normals } else { &self.normals };
                 let width = start + spread * self.travelled[lane];
                 let mut patch = Patch::seen(dir.get(lane), normals.get(lane), (width, pixel));
                 point.uv.into_iter().for_each(|uv| patch.find_uv(&**shape, position, uv));
@@ -92,7 +92,7 @@ impl Surface {
         }
         if bends {
             if !shape.is_smooth() {
-                self.unbent.copy(self.normals.view(count));
+                self.geometric_normals.copy(self.normals.view(count));
             }
             for lane in 0..count {
                 let bent = shader.bend(&self.seen[lane]);
@@ -105,8 +105,8 @@ impl Surface {
     /// Returns the normal of the surface itself at a point that is shaded with another normal.
     #[inline(always)]
     pub fn bent_from(&self, lane: usize) -> Option<DVec3> {
-        let unbent = self.unbent.get(lane);
-        (self.is_bent && unbent != self.normals.get(lane)).then_some(unbent)
+        let geometric = self.geometric_normals.get(lane);
+        (self.is_bent && geometric != self.normals.get(lane)).then_some(geometric)
     }
 
     /// Clears `shines` where a light shines on the surface from behind: there it may shine only on the bent normals.
@@ -114,7 +114,7 @@ impl Surface {
     pub fn hide_from_behind(&self, toward: View, shines: &mut [u64], t_max: &mut [f64]) -> bool {
         let mut any = false;
         for lane in 0..shines.len() {
-            if self.bent_from(lane).is_some_and(|unbent| toward.get(lane).dot(unbent) <= 0.0) {
+            if self.bent_from(lane).is_some_and(|geometric| toward.get(lane).dot(geometric) <= 0.0) {
                 (shines[lane], t_max[lane]) = (0, 0.0);
             }
             any |= shines[lane] != 0;
@@ -164,9 +164,9 @@ impl Surface {
             let cross = |normal| interface.cross(dir, facing(normal, dir), side);
             let crossing = cross(self.normals.get(lane));
             // Bent normals may lead a ray back to the side from which it comes.
-            let Some(unbent) = self.bent_from(lane) else { return crossing };
-            let is_through = |onward: DVec3| onward.dot(unbent) * dir.dot(unbent) > 0.0;
-            if crossing.onward.is_none_or(is_through) { crossing } else { cross(unbent) }
+            let Some(geometric) = self.bent_from(lane) else { return crossing };
+            let is_through = |onward: DVec3| onward.dot(geometric) * dir.dot(geometric) > 0.0;
+            if crossing.onward.is_none_or(is_through) { crossing } else { cross(geometric) }
         };
         (0..dir.len()).map(crossing).collect()
     }

@@ -9,8 +9,8 @@
 //! bounds are more than a level apart.
 //!
 //! The trees of a packet of primary rays grow together, in rounds, so rays are still traced in packets: in each
-//! round, every tree gives its heaviest open ray, and those at least half as heavy. The rules of a tree look at the
-//! tree alone, and the results of a round are added in the order in which its rays were given, so no colour depends
+//! wave, every tree gives its heaviest open ray, and those at least half as heavy. The rules of a tree look at the
+//! tree alone, and the results of a wave are added in the order in which its rays were given, so no colour depends
 //! on the packet.
 //!
 //! Under the notes' rules, branches end as the [depth](crate::render::plan::depth) describes. There each branch has
@@ -39,7 +39,7 @@ pub(super) const SHOWN: f64 = 1.0;
 /// A lower limit on the slope of the display curve below white: that of sRGB is 0.44 there, a linear one is steeper.
 const FLATTEST: f64 = 0.4;
 
-/// Open rays with at least this part of the heaviest one's weight are followed in the same round.
+/// Open rays with at least this part of the heaviest one's weight are followed in the same wave.
 const TOGETHER: f64 = 0.5;
 
 /// A ray that is yet to be followed.
@@ -79,7 +79,7 @@ impl OpenRay {
 }
 
 impl OpenRay {
-    /// Returns a placeholder for a primary ray of the first round: only its lane matters.
+    /// Returns a placeholder for a primary ray of the first wave: only its lane matters.
     pub fn primary(camera: usize) -> Self {
         Self {
             width: f64::INFINITY,
@@ -226,20 +226,20 @@ impl Tree {
     }
 
     /// Takes the rays that are followed next, unless the tree has ended.
-    pub fn next(&mut self, ends: &Ends, depth: &Depth, round: &mut Vec<OpenRay>) {
+    pub fn next(&mut self, ends: &Ends, depth: &Depth, wave: &mut Vec<OpenRay>) {
         if self.is_over() || self.bounds().is_some_and(|bounds| ends.are_met(bounds)) {
             return;
         }
         let Some(heaviest) = self.open.peek().map(|ray| ray.width) else { return };
         // Unbounded rays are all equally heavy.
         let most = if heaviest == f64::INFINITY { 1 } else { usize::MAX };
-        let first = round.len();
-        while round.len() - first < most
+        let first = wave.len();
+        while wave.len() - first < most
             && let Some(ray) = self.pop(TOGETHER * heaviest, depth)
         {
-            round.push(ray);
+            wave.push(ray);
         }
-        self.rays += (round.len() - first) as u32;
+        self.rays += (wave.len() - first) as u32;
     }
 
     /// Tells whether the budget is used up.

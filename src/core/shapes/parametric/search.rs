@@ -12,7 +12,7 @@ use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::Scalar;
 
 /// The maximum number of examined parts of the rectangle for a line.
-const MOST: usize = 2048;
+const MAX_PATCHES: usize = 2048;
 
 /// The margin by which a part is enlarged on each side before the test, as a fraction of its width. With it, a solution
 /// at a side of a part is proven like any other.
@@ -117,7 +117,7 @@ where
             }
         });
         let mut found = Found { hit: None, undecided: None, narrow: None };
-        let mut left = (if F::IS_LONG { MOST / 32 } else { MOST }).max(2 * number);
+        let mut left = (if F::IS_LONG { MAX_PATCHES / 32 } else { MAX_PATCHES }).max(2 * number);
         while let Some(Part { from, leaf, part, .. }) = waiting.pop() {
             if found.hit.is_some_and(|hit: Hit<F>| F::of(from) > hit.t.high) {
                 break;

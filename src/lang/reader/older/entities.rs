@@ -16,7 +16,7 @@ use tabray_core::text::shortest;
 const WIDTH: f64 = 400.0;
 
 /// The maximum number of pixels of a side.
-const MOST: f64 = 100_000.0;
+const MAX_PIXELS: f64 = 100_000.0;
 
 /// The entities of a scene. Each is named after its kind and its number.
 pub struct Entities<'a, 'r> {
@@ -94,7 +94,7 @@ impl<'a, 'r> Entities<'a, 'r> {
         report: &mut Report<'_>,
     ) {
         self.shift = size.map(|side| side / 2.0);
-        let height = (WIDTH * size[1] / size[0]).round().clamp(1.0, MOST);
+        let height = (WIDTH * size[1] / size[0]).round().clamp(1.0, MAX_PIXELS);
         let mut camera = draft("camera", "c".to_owned(), &place, report);
         let [two, three] = [2, 3].map(|count| vec![place.clone(); count]);
         camera.numbers("pixeldim", &[WIDTH, height], &two);

@@ -6,7 +6,7 @@ use std::ops::Range;
 use tabray_core::text::{count, shortest};
 
 /// The maximum number of differences that the note lists.
-const MOST: usize = 12;
+const MAX_LISTED: usize = 12;
 
 /// The differences, each with its first place and the number of occurrences.
 #[derive(Default)]
@@ -16,7 +16,7 @@ impl Unmapped {
     fn add(&mut self, what: String, place: Range<usize>) {
         if let Some((.., count)) = self.0.iter_mut().find(|(known, ..)| *known == what) {
             *count += 1;
-        } else if self.0.len() < MOST {
+        } else if self.0.len() < MAX_LISTED {
             self.0.push((what, place, 1));
         }
     }

@@ -22,48 +22,48 @@ pub(super) struct Outcome {
 #[derive(Default)]
 pub(super) struct TreeScratch {
     pub trees: Vec<Tree>,
-    /// The rays of the current round, and what was found at their hits.
-    pub round: Vec<OpenRay>,
+    /// The rays of the current wave, and what was found at their hits.
+    pub wave: Vec<OpenRay>,
     pub outcomes: Vec<Outcome>,
-    /// The numbers of the rays in the round, by the objects that they leave.
+    /// The numbers of the rays in the wave, by the objects that they leave.
     pub order: Vec<u32>,
     pub group: RayGroup,
     pub seen: VectorList,
 }
 
 impl TreeScratch {
-    /// Starts the round of these rays.
-    pub fn begin_round(&mut self) {
+    /// Starts the wave of these rays.
+    pub fn begin_wave(&mut self) {
         self.outcomes.clear();
-        self.outcomes.resize(self.round.len(), Outcome::default());
+        self.outcomes.resize(self.wave.len(), Outcome::default());
     }
 
-    /// Fills a packet with rays of the round that leave the same object. Each may cost what is left of its tree's
+    /// Fills a packet with rays of the wave that leave the same object. Each may cost what is left of its tree's
     /// work, but at least half of `MAX_RAYS`.
     pub fn gather(&mut self, places: &[u32], first: usize, group: &mut RayGroup) {
-        let Self { trees, round, outcomes, .. } = self;
+        let Self { trees, wave, outcomes, .. } = self;
         for place in places {
-            let tree = &trees[usize::from(round[*place as usize].camera) - first];
+            let tree = &trees[usize::from(wave[*place as usize].camera) - first];
             outcomes[*place as usize].cost = MAX_RAYS as u32 - tree.work.min(MAX_RAYS as u32 / 2);
         }
-        let rays = places.iter().map(|place| &round[*place as usize]);
+        let rays = places.iter().map(|place| &wave[*place as usize]);
         group.open(rays, places.iter().map(|place| outcomes[*place as usize].cost));
         group.places.clear();
         group.places.extend_from_slice(places);
     }
 
-    /// Notes what a packet of the round's rays has found.
+    /// Notes what a packet of the wave's rays has found.
     pub fn note(&mut self, group: &RayGroup, seen: &VectorList) {
         for (lane, place) in group.places[..group.len].iter().enumerate() {
-            let (ray, outcome) = (&self.round[*place as usize], &mut self.outcomes[*place as usize]);
+            let (ray, outcome) = (&self.wave[*place as usize], &mut self.outcomes[*place as usize]);
             outcome.light = ray.weight * seen.get(lane);
             outcome.cost -= group.ray_budget[lane];
         }
     }
 
-    /// Adds what the round has found to its trees, in the order of its rays.
+    /// Adds what the wave has found to its trees, in the order of its rays.
     pub fn add(&mut self, first: usize, depth: &Depth, ends: &Ends) {
-        for (ray, outcome) in self.round.iter().zip(&self.outcomes) {
+        for (ray, outcome) in self.wave.iter().zip(&self.outcomes) {
             let tree = &mut self.trees[usize::from(ray.camera) - first];
             tree.found += outcome.light;
             tree.work += outcome.cost;

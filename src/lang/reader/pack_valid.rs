@@ -16,7 +16,7 @@ use tabray_core::scene::store::{Packer, Store};
 use tabray_core::scene::value::{Datum, Type};
 
 /// Checked and packed entities, with scratch memory.
-pub struct Quick<'r> {
+pub struct ValidPacker<'r> {
     registry: &'r Registry,
     tables: Tables,
     bytes: Vec<u8>,
@@ -38,7 +38,7 @@ pub struct Packed<B> {
     pub bytes: B,
 }
 
-impl<'r> Quick<'r> {
+impl<'r> ValidPacker<'r> {
     /// Makes a checker without entities.
     pub fn new(registry: &'r Registry) -> Self {
         Self {

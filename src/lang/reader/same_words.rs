@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 /// A parsed entity.
-pub struct Alike {
+pub struct SameWords {
     /// The range of its type.
     pub kind: Range<usize>,
     /// The range between its braces.
@@ -21,7 +21,7 @@ pub struct Alike {
 impl<'a> Parsed<'a> {
     /// Replaces this entity by the one that begins at a byte of a text, if that has the same words. Otherwise, this
     /// entity becomes invalid.
-    pub(super) fn become_alike(&mut self, text: &'a str, at: usize) -> Option<Alike> {
+    pub(super) fn take_same_words(&mut self, text: &'a str, at: usize) -> Option<SameWords> {
         let mut words = Words { text, at: after_space(text, at) };
         let start = words.at;
         if self.is_damaged || !words.next(&mut self.kind, |new, old| new == old) {
@@ -41,7 +41,7 @@ impl<'a> Parsed<'a> {
         }
         let close = words.brace(b'}')?;
         self.place = Some(start..close);
-        Some(Alike { kind, body: open..close - 1 })
+        Some(SameWords { kind, body: open..close - 1 })
     }
 }
 

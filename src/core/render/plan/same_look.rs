@@ -7,17 +7,17 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The maximum number of looks that are told apart. It saves memory in scenes in which each object has its own look.
-const MOST: usize = 256;
+const MAX_LOOKS: usize = 256;
 
 /// What objects look like: their material and their shader, by where these are in memory.
 type Look = (usize, usize);
 
 /// For each object, the first one that looks the same.
-pub(crate) struct Alike {
+pub(crate) struct SameLook {
     first: Vec<u32>,
 }
 
-impl Alike {
+impl SameLook {
     /// Finds the objects that look the same: of one material and one shader, on which all points reflect the same
     /// light, and none of it as a mirror. `None` where there are none.
     pub fn of(model: &Model) -> Option<Self> {
@@ -31,7 +31,7 @@ impl Alike {
                 (Arc::as_ptr(&object.material) as usize, Arc::as_ptr(&object.shader).cast::<()>() as usize);
             let known = match last {
                 Some((known, first)) if known == look => first,
-                _ if looks.len() >= MOST && !looks.contains_key(&look) => None,
+                _ if looks.len() >= MAX_LOOKS && !looks.contains_key(&look) => None,
                 _ => *looks.entry(look).or_insert_with(|| is_plain(object).then_some(index)),
             };
             last = Some((look, known));
@@ -45,7 +45,7 @@ impl Alike {
 
     /// Returns the first object that looks like the given one, as indices plus 1; 0 stands for none.
     #[inline]
-    pub fn look(&self, id: u64) -> u64 {
+    pub fn look_up(&self, id: u64) -> u64 {
         match (id as usize).checked_sub(1) {
             Some(index) => u64::from(self.first[index]) + 1,
             None => 0,
