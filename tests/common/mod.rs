@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
 pub mod glass;
+pub mod instructions;
 pub mod program;
 
 use image::RgbImage;
