@@ -40,9 +40,9 @@ pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
     Ok(match args.accuracy() {
         Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
         Accuracy::Draft | Accuracy::Exact => {
-            Shape::new(finite_plane::<Exact>(args)?).flat().certified().into()
+            Shape::new(finite_plane::<Exact>(args)?).bracketed().certified().into()
         }
-        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).flat().certified().into(),
+        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).bracketed().certified().into(),
     })
 }
 

@@ -39,6 +39,6 @@ inventory::submit! {
             let (what, help) = fault.message();
             Refusal { attribute: Some("points"), message: format!("has a profile {what}"), help }
         })?;
-        Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))
+        Ok(Body::plain(AnyShape::of_packets(InFrame { surface, frame })))
     })
 }

@@ -39,9 +39,9 @@ const TABLE: Table =
 inventory::submit! {
     Entity::shape("mesh", "a surface of triangles from a file", &[TABLE], |args| {
         let surface = Arc::new(surface(args)?);
-        let shape: AnyShape = match args.accuracy() {
-            Accuracy::Strict => Mesh::<Strict>::shape(surface.clone(), args.accuracy()).into(),
-            _ => Mesh::<Exact>::shape(surface.clone(), args.accuracy()).into(),
+        let shape = match args.accuracy() {
+            Accuracy::Strict => AnyShape::of_packets(Mesh::<Strict>::new(surface.clone(), args.accuracy())),
+            _ => AnyShape::of_packets(Mesh::<Exact>::new(surface.clone(), args.accuracy())),
         };
         let told = |remark: &read::Remark| Warning {
             attribute: "file",

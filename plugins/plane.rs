@@ -33,7 +33,7 @@ pub fn shape(args: &Args) -> AnyShape {
 }
 
 fn exact<A: Bounded>(plane: Plane<A>) -> AnyShape {
-    Shape::new(plane.from_nearest_point()).flat().certified().into()
+    Shape::new(plane.from_nearest_point()).bracketed().certified().into()
 }
 
 /// Makes the plane of an entity whose table has the rows of [`TABLE`], with hits of accuracy `A`.

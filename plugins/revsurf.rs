@@ -40,7 +40,7 @@ inventory::submit! {
             let (what, help) = fault.message();
             Refusal { attribute, message: format!("has a profile {what}"), help }
         })?;
-        Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))
+        Ok(Body::plain(AnyShape::of_packets(InFrame { surface, frame })))
     })
 }
 

@@ -32,8 +32,10 @@ fn shape(args: &Args) -> Option<AnyShape> {
     Some(match args.accuracy() {
         Accuracy::Classic => Shape::new(LooseTriangle::classic(corners, end)?).classic().into(),
         Accuracy::Draft | Accuracy::Exact => {
-            Shape::new(LooseTriangle::<Exact>::new(corners, end)?).flat().certified().into()
+            Shape::new(LooseTriangle::<Exact>::new(corners, end)?).bracketed().certified().into()
         }
-        Accuracy::Strict => Shape::new(LooseTriangle::<Strict>::new(corners, end)?).flat().certified().into(),
+        Accuracy::Strict => {
+            Shape::new(LooseTriangle::<Strict>::new(corners, end)?).bracketed().certified().into()
+        }
     })
 }

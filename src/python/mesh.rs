@@ -49,7 +49,7 @@ pub fn mesh(
         how.run(py, 0, |_, _| Surface::of_arrays((0..count).map(|index| view.row(index)).collect(), faces))?;
     let surface = Arc::new(surface.map_err(|error| PyValueError::new_err(error.to_string()))?);
     let registry = Registry::get().map_err(PyRuntimeError::new_err)?;
-    let shape = Shape::<Exact>::shape(surface.clone(), Accuracy::Exact);
+    let shape = AnyShape::of_packets(Shape::<Exact>::new(surface.clone(), Accuracy::Exact));
     let model = reader::model_of_shape(registry, shape).map_err(|report| errors::exception(py, &report))?;
     Ok(Mesh { surface, turned: OnceLock::new(), model })
 }

@@ -1,11 +1,11 @@
 //! Shapes whose hits are found by another root-finding method, for comparison.
 
-use crate::geometry::ray::{MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision, Premise};
-use crate::world::hittable::{ByDistance, Facts, Hittable, Shape, TieBreaking};
-use crate::world::packets::shape::HitQueries;
+use crate::world::hittable::{Facts, Hittable};
+use crate::world::packets::shape::{HitQueries, ScalarIntersect, by_distance};
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
@@ -13,7 +13,7 @@ use tabray_exact::roots::Method;
 /// Returns a shape whose hits are found by this method, if they are [searched](is_searched). Its proofs are those of
 /// the original.
 pub fn by_method(shape: AnyShape, method: Method) -> AnyShape {
-    Shape::new(WithMethod { shape, method }).by::<ByDistance, OriginalProofs>().into()
+    AnyShape::of_packets(WithMethod { shape, method })
 }
 
 /// Tells whether a shape's hits are roots of a function along a ray.
@@ -27,9 +27,6 @@ struct WithMethod {
     shape: AnyShape,
     method: Method,
 }
-
-/// Takes the proofs of hits from the original shape.
-struct OriginalProofs;
 
 impl Hittable for WithMethod {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
@@ -46,11 +43,26 @@ impl Hittable for WithMethod {
     }
 }
 
-impl TieBreaking for OriginalProofs {}
+impl ScalarIntersect for WithMethod {
+    type Author = Self;
 
-impl HitQueries for Shape<WithMethod, ByDistance, OriginalProofs> {
+    fn author(&self) -> &Self {
+        self
+    }
+
+    fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
+        let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
+        by_distance(ray, range, is_on_surface, |range| Some(self.distance(ray, range)))
+    }
+
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+    }
+}
+
+impl HitQueries for WithMethod {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        self.shape.shape.is_on_surface(at, error)
+        self.shape.is_on_surface(at, error)
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
@@ -58,11 +70,11 @@ impl HitQueries for Shape<WithMethod, ByDistance, OriginalProofs> {
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        self.shape.shape.premises(of, each);
+        self.shape.premises(of, each);
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.shape.shape.certify(sight, precision)
+        self.shape.certify(sight, precision)
     }
 
     fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {

@@ -1,9 +1,9 @@
 //! A rectangle as a shape: its hits for rays, packets and proofs.
 
-use super::plane::{Flat, Plane};
 use super::rectangle::{FinitePlane, along_sides};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Facts, Hittable};
@@ -54,14 +54,10 @@ impl<A: Bounded> Bracketed for FinitePlane<A> {
         // A certain hit lies inside the rectangle.
         self.plane.quick_crossing(ray)
     }
-}
-
-impl<A: Bounded> Flat for FinitePlane<A> {
-    type Accuracy = A;
 
     #[inline(always)]
-    fn flat(&self) -> Plane<A> {
-        self.plane
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+        self.plane.refine_each(rays, out);
     }
 }
 

@@ -4,6 +4,7 @@ use crate::geometry::placement::Rotation;
 use crate::shapes::mesh::read::Model;
 use crate::shapes::mesh::{Look, Mesh, Surface, SurfaceError, ToWorld};
 use crate::world::accuracy::{Accuracy, Exact, Strict};
+use crate::world::any_shape::AnyShape;
 use crate::world::body::Body;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -134,8 +135,8 @@ pub fn body(model: Model, are_rounded: bool, accuracy: Accuracy) -> Result<Body,
     surface.are_rounded = are_rounded;
     let surface = Arc::new(surface);
     Ok(match accuracy {
-        Accuracy::Strict => Body::plain(Mesh::<Strict>::shape(surface, accuracy)),
-        _ => Body::plain(Mesh::<Exact>::shape(surface, accuracy)),
+        Accuracy::Strict => Body::plain(AnyShape::of_packets(Mesh::<Strict>::new(surface, accuracy))),
+        _ => Body::plain(AnyShape::of_packets(Mesh::<Exact>::new(surface, accuracy))),
     })
 }
 

@@ -167,6 +167,36 @@ pub trait Bracketed: Hittable {
     /// bracket has found for certain, or NaN where it takes more than plain arithmetic. For other rays it need not
     /// detect a miss. `origin_side` is the side of the shape that the ray starts on, if it starts on the shape.
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
+
+    /// Tells whether eight rays certainly miss the shape, where that is known in less time than their brackets.
+    #[inline(always)]
+    fn is_missed_by(&self, _rays: RayPacket) -> bool {
+        false
+    }
+
+    /// Writes the result of [`refine`](Self::refine) for each ray of a packet.
+    #[inline(always)]
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+        each_refined(rays, out, |ray, side| self.refine(ray, side));
+    }
+}
+
+/// Writes the distance of each ray of a packet, given the side of the shape that it leaves.
+#[inline(always)]
+pub(crate) fn each_refined(rays: RayPacket, out: &mut [f64], refine: impl Fn(&Ray, Option<Side>) -> f64) {
+    let (count, rays) = (out.len(), rays.first(out.len()));
+    match rays.leaving {
+        None => {
+            for lane in 0..count {
+                out[lane] = refine(&rays.get(lane), None);
+            }
+        }
+        Some(sides) => {
+            for lane in 0..count {
+                out[lane] = refine(&rays.get(lane), Some(sides[lane]));
+            }
+        }
+    }
 }
 
 /// A shape given by an equation, by which its hits can be proven.
@@ -349,8 +379,6 @@ impl<T: Hittable + Equation> Shape<T> {
 pub struct ByDistance;
 /// Marks a shape whose hits are found by its bracket, and refined by its distance.
 pub struct ByBracket;
-/// Marks a shape whose hits are found by functions of its own that take packets.
-pub struct ByPackets;
 
 /// Marks a shape about whose hits nothing is proven.
 pub struct Unproven;

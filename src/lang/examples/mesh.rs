@@ -25,7 +25,7 @@ pub fn answer() -> Result<String, Box<dyn std::error::Error>> {
     });
     let surface =
         Surface::of_arrays(vertices.collect(), faces.collect()).map_err(|error| error.to_string())?;
-    let mesh = Mesh::<Exact>::shape(surface.into(), Accuracy::Exact);
+    let mesh = AnyShape::of_packets(Mesh::<Exact>::new(surface.into(), Accuracy::Exact));
     let model = reader::model_of_shape(Registry::get()?, mesh)?;
     let query = Query::new(&model);
 

@@ -3,21 +3,20 @@
 use super::known::Known;
 use super::memo::Memo;
 use super::search::Aims;
-use super::shape::{ByFaces, Mesh};
+use super::shape::Mesh;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{self, PACKET_SIZE, RayPacket, SurfaceInteraction, turned};
 use crate::shapes::triangle::{crossings, unit_normals};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Bounded;
-use crate::world::hittable::{ByPackets, Shape};
 use crate::world::packets::shape::PacketIntersect;
 
-impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
+impl<A: Bounded> PacketIntersect for Mesh<A> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         near.fill(MISS);
         far.fill(MISS);
-        let (mesh, side, ends, drift) = (&self.shape, rays.side(0), &ends[..near.len()], rays.drift);
+        let (mesh, side, ends, drift) = (self, rays.side(0), &ends[..near.len()], rays.drift);
         if side.is_some() && !mesh.can_hit_itself {
             return;
         }
@@ -50,7 +49,7 @@ impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
     ) -> bool {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let count = t_max.len();
-        let mesh = &self.shape;
+        let mesh = &self;
         let side = rays.side(0);
         if side.is_none() || mesh.can_hit_itself {
             let aims =
@@ -72,7 +71,7 @@ impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn refine(&self, _cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
-        let mesh = &self.shape;
+        let mesh = &self;
         for lane in 0..out.len() {
             let leaving = mesh.leaving(rays.side(lane), rays.origin_error);
             let bracket = Bracket { near: near[lane], far: far[lane] };
@@ -89,7 +88,7 @@ impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
         Memo::with(|memo| {
             interact(
                 cpu,
-                &self.shape,
+                self,
                 rays,
                 distances,
                 memo,
@@ -109,17 +108,16 @@ impl<A: Bounded> PacketIntersect for Shape<Mesh<A>, ByPackets, ByFaces> {
 
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if ray.is_single() {
-            self.shape.bracket(Cpu::best(), ray, range).0
+            self.bracket(Cpu::best(), ray, range).0
         } else {
-            self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range)
+            self.surface.bracket_within::<A>(Cpu::best(), ray, range)
         }
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        let (leaving, range) =
-            (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
-        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, RayError::NONE, false) {
-            Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
+        let (leaving, range) = (self.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
+        match self.surface.first(Cpu::best(), ray, &range, leaving, RayError::NONE, false) {
+            Known::Face { face, .. } => self.surface.plane::<A>(face).quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }
     }

@@ -17,7 +17,7 @@ use crate::world::certify::{
     ProofMethods,
 };
 use crate::world::coincidence::{CLOSE, ROUNDING};
-use crate::world::hittable::{ByPackets, Facts, Hittable, Shape, Sides, SurfaceHit};
+use crate::world::hittable::{Facts, Hittable, Sides, SurfaceHit};
 use crate::world::packets::shape::HitQueries;
 use glam::{DMat3, DVec2, DVec3};
 use std::marker::PhantomData;
@@ -39,14 +39,10 @@ pub struct Mesh<A> {
 /// take two seconds.
 const MOST_MAPPED: usize = 1000;
 
-/// Marks a shape that consists of faces, with hits proven face by face.
-pub struct ByFaces;
-
 impl<A: Bounded> Mesh<A> {
     /// Makes the shape of a surface.
-    pub fn shape(surface: Arc<Surface>, accuracy: Accuracy) -> Shape<Self, ByPackets, ByFaces> {
-        let can_hit_itself = accuracy != Accuracy::Classic;
-        Shape::new(Self { surface, can_hit_itself, accuracy: PhantomData }).by()
+    pub fn new(surface: Arc<Surface>, accuracy: Accuracy) -> Self {
+        Self { surface, can_hit_itself: accuracy != Accuracy::Classic, accuracy: PhantomData }
     }
 
     /// Tells whether both sides of the surface are lit.
@@ -201,21 +197,21 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 }
 
-impl<A: Bounded> HitQueries for Shape<Mesh<A>, ByPackets, ByFaces> {
+impl<A: Bounded> HitQueries for Mesh<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        self.shape.surface.is_on_surface::<A>(at, error)
+        self.surface.is_on_surface::<A>(at, error)
     }
 
     fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.shape.surface.contains::<A>(at, error)
+        self.surface.contains::<A>(at, error)
     }
 
     fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
-        self.shape.surface.facet::<A>(at, error)
+        self.surface.facet::<A>(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-        let surface = &self.shape.surface;
+        let surface = &self.surface;
         let face = surface.face_along(ray, distance);
         let fine = surface.triangle::<A>(face).plane.exact_crossing(ray);
         // At an edge, the ray may hit the plane of a neighbouring face far from the edge.
@@ -224,15 +220,15 @@ impl<A: Bounded> HitQueries for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        self.shape.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
+        self.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.shape.surface.certify::<A>(sight, precision)
+        self.surface.certify::<A>(sight, precision)
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
-        Some(&self.shape)
+        Some(self)
     }
 }
 

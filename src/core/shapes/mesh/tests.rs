@@ -55,7 +55,7 @@ pub(super) fn surface(model: Model, placement: &ToWorld) -> Surface {
 }
 
 fn shape(surface: &Arc<Surface>) -> AnyShape {
-    Mesh::<Exact>::shape(surface.clone(), Accuracy::Exact).into()
+    AnyShape::of_packets(Mesh::<Exact>::new(surface.clone(), Accuracy::Exact))
 }
 
 /// Returns the distance of a ray's first hit of any triangle.

@@ -1,6 +1,5 @@
 //! Proofs of the hits of a parametric surface.
 
-use super::ByPatches;
 use super::patch::{Patches, PatchesIn, Rectangle};
 use super::search::{Found, Search, meet};
 use super::shape::ParametricShape;
@@ -10,7 +9,6 @@ use crate::geometry::sight::{Line, Sight};
 use crate::world::certify::{
     Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precision, Premise, ProofMethods, coarse,
 };
-use crate::world::hittable::{ByBracket, Shape};
 use crate::world::packets::shape::HitQueries;
 use f256::f256;
 use glam::DVec3;
@@ -153,9 +151,9 @@ impl OverFootprint for ParametricShape {
     }
 }
 
-impl HitQueries for Shape<ParametricShape, ByBracket, ByPatches> {
+impl HitQueries for ParametricShape {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        self.shape.is_near(at, error)
+        self.is_near(at, error)
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
@@ -166,12 +164,12 @@ impl HitQueries for Shape<ParametricShape, ByBracket, ByPatches> {
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         match precision {
-            Precision::Double => HitProofs::<f64>::first_hit(&self.shape, &sight.line(), None).0.into(),
-            Precision::Octuple => HitProofs::<f256>::first_hit(&self.shape, &sight.line(), None).0.into(),
+            Precision::Double => HitProofs::<f64>::first_hit(self, &sight.line(), None).0.into(),
+            Precision::Octuple => HitProofs::<f256>::first_hit(self, &sight.line(), None).0.into(),
         }
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
-        Some(&self.shape)
+        Some(self)
     }
 }

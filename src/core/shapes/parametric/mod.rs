@@ -18,10 +18,11 @@ pub use patch::Parametric;
 
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::sight::Line;
+use crate::world::any_shape::AnyShape;
 use crate::world::body::Body;
 use crate::world::coincidence::{LEAST_COSINE, ROUNDING};
-use crate::world::hittable::{Bracketed, ByBracket, Facts, Hittable, Shape};
-use crate::world::packets::shape::by_distance;
+use crate::world::hittable::{Facts, Hittable};
+use crate::world::packets::shape::{ScalarIntersect, by_distance};
 use glam::{DVec2, DVec3};
 use patch::{Patches, Rectangle, normal};
 use search::{Found, Search};
@@ -29,9 +30,6 @@ use shape::ParametricShape;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{constants, per_axis};
 use tree::Tree;
-
-/// Marks a shape with hits proven by Krawczyk's test.
-pub(crate) struct ByPatches;
 
 impl Body {
     /// Makes an object of a parametric surface. The material gives the reflectivities. Returns `None` if the surface is
@@ -42,7 +40,7 @@ impl Body {
         let tree = Tree::new(&*patches, ends);
         let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?.with_slack(0.0);
         let shape = ParametricShape { patches, tree, bounds };
-        Some(Self::plain(Shape::new(shape).by::<ByBracket, ByPatches>()))
+        Some(Self::plain(AnyShape::of_packets(shape)))
     }
 }
 
@@ -111,7 +109,13 @@ impl Hittable for ParametricShape {
     }
 }
 
-impl Bracketed for ParametricShape {
+impl ScalarIntersect for ParametricShape {
+    type Author = Self;
+
+    fn author(&self) -> &Self {
+        self
+    }
+
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if ray.is_single() {
             let is_on_surface = || self.is_near(ray.origin, range.origin_error);

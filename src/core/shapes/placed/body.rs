@@ -1,10 +1,10 @@
 //! Copies as objects, and their reflectivities.
 
-use super::shape::{ByPlacement, Placed};
+use super::shape::Placed;
 use crate::geometry::placement::Placement;
+use crate::world::any_shape::AnyShape;
 use crate::world::body::{AnyShader, Body, MakeBoundary};
 use crate::world::certify::Precise;
-use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::PacketShader;
 use crate::world::patch::{Patch, PatchBounds};
@@ -17,8 +17,7 @@ impl Placed {
     /// Makes a copy of an object with this material. If the object ends like planes do, the copy ends at `max_z`, in
     /// world space.
     pub fn body(body: &Arc<Body>, (placement, max_z): (Placement, Option<f64>), material: &Material) -> Body {
-        let shape = Self::new(body, placement).up_to(max_z);
-        let shape = Shape::new(shape).by::<ByPackets, ByPlacement>();
+        let shape = AnyShape::of_packets(Self::new(body, placement).up_to(max_z));
         let is_plain = body.shader.uniform(material) == Plain.uniform(material) && !body.shader.bends();
         let shaded = |shape| Body::shaded(shape, PlacedShader::new(body, placement, None));
         let copy = if is_plain { Body::plain(shape) } else { shaded(shape) };
@@ -29,7 +28,7 @@ impl Placed {
         let own = Arc::clone(body);
         let boundary = move || {
             let inner = Body { entity: own.entity, ..Body::plain(own.boundary()?) };
-            Some(Shape::new(Self::new(&Arc::new(inner), placement)).by::<ByPackets, ByPlacement>().into())
+            Some(AnyShape::of_packets(Self::new(&Arc::new(inner), placement)))
         };
         Body {
             boundary: body.boundary.is_some().then(|| -> MakeBoundary { Box::new(boundary) }),

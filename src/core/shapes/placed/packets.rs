@@ -2,13 +2,13 @@
 //! packets there, too.
 
 use super::object_space::{ObjectSpaceRays, take_out, to_world};
-use super::shape::{ByPlacement, Placed, entered};
+use super::shape::{Placed, entered};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{RayPacket, SurfaceInteraction, split};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
-use crate::world::hittable::{ByPackets, Hittable, Shape};
+use crate::world::hittable::Hittable;
 use crate::world::packets::brackets;
 use crate::world::packets::shape::{self, PacketIntersect};
 
@@ -160,14 +160,14 @@ impl Placed {
     }
 }
 
-impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
+impl PacketIntersect for Placed {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         if near.len() <= LANES {
-            return self.shape.few_brackets::<LANES>(cpu, rays, ends, (near, far));
+            return self.few_brackets::<LANES>(cpu, rays, ends, (near, far));
         }
         for part in split(near.len(), PART) {
             let brackets = (&mut near[part.clone()], &mut far[part.clone()]);
-            self.shape.few_brackets::<PART>(cpu, rays.part(part.clone()), &ends[part], brackets);
+            self.few_brackets::<PART>(cpu, rays.part(part.clone()), &ends[part], brackets);
         }
     }
 
@@ -179,7 +179,7 @@ impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        let (placed, count) = (&self.shape, t_max.len());
+        let (placed, count) = (self, t_max.len());
         // The shape does not know the end of its copy.
         let is_whole = placed.max_z.0.is_none() && !placed.body.shape.packets().is_of_the_notes();
         let Some(bounds) = placed.bounds.filter(|_| is_whole) else {
@@ -201,14 +201,14 @@ impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
     fn refine(&self, cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
         for part in split(out.len(), PART) {
             let brackets = (&near[part.clone()], &far[part.clone()]);
-            self.shape.few_refine(cpu, rays.part(part.clone()), brackets, &mut out[part]);
+            self.few_refine(cpu, rays.part(part.clone()), brackets, &mut out[part]);
         }
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let shape = self.shape.body.shape.packets();
+        let shape = self.body.shape.packets();
         if shape.is_of_the_notes() || !shape.finds_normals_by_rays() {
-            return shape::interact_each(cpu, &self.shape, rays, distances, interaction);
+            return shape::interact_each(cpu, self, rays, distances, interaction);
         }
         let SurfaceInteraction { mut points, mut normals, mut geometric_normals, sides, cosines, travelled } =
             interaction;
@@ -222,19 +222,19 @@ impl PacketIntersect for Shape<Placed, ByPackets, ByPlacement> {
                 travelled: &mut travelled[part.clone()],
             };
             let rays = rays.part(part.clone());
-            self.shape.few_interact::<PART>(cpu, rays, &distances[part], interaction);
+            self.few_interact::<PART>(cpu, rays, &distances[part], interaction);
         }
     }
 
     fn finds_normals_by_rays(&self) -> bool {
-        self.shape.body.shape.packets().finds_normals_by_rays()
+        self.body.shape.packets().finds_normals_by_rays()
     }
 
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
-        self.shape.t_bounds(ray, range)
+        self.t_bounds(ray, range)
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }

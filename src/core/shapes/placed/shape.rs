@@ -9,7 +9,7 @@ use crate::geometry::sight::Sight;
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
-use crate::world::hittable::{ByPackets, Curvature, Facts, Hittable, Shape};
+use crate::world::hittable::{Curvature, Facts, Hittable};
 use crate::world::packets::shape::HitQueries;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -25,9 +25,6 @@ pub struct Placed {
     /// The end of a copy of a plane.
     pub(super) max_z: MaxZ,
 }
-
-/// Marks a copy of an object, with hits proven in object space.
-pub struct ByPlacement;
 
 /// A bound of the error of [`Placed::to_object_space`] as a map of unit vectors, times the minimum scale, and of the
 /// rounding of a mapped point or direction.
@@ -282,21 +279,20 @@ fn is_on_surface(placed: &Placed, at: DVec3, error: f64) -> bool {
     placed.body.shape.is_on_surface(placed.object_point(at), placed.object_error(at, error))
 }
 
-impl HitQueries for Shape<Placed, ByPackets, ByPlacement> {
+impl HitQueries for Placed {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        is_on_surface(&self.shape, at, error)
+        is_on_surface(self, at, error)
     }
 
     fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
         // A rotated cube extends as far along an axis as from its middle to its corners.
         let error = 1.001 * 3_f64.sqrt() * error;
-        self.shape.body.shape.contains(self.shape.object_point(at), self.shape.object_error(at, error))
+        self.body.shape.contains(self.object_point(at), self.object_error(at, error))
     }
 
     fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
-        let own =
-            self.shape.body.shape.facet(self.shape.object_point(at), self.shape.object_error(at, error))?;
-        own.placed(self.shape.placement)
+        let own = self.body.shape.facet(self.object_point(at), self.object_error(at, error))?;
+        own.placed(self.placement)
     }
 
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
@@ -304,20 +300,20 @@ impl HitQueries for Shape<Placed, ByPackets, ByPlacement> {
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        let found = self.shape.body.shape.certify(&sight.within(self.shape.placement), precision);
-        self.shape.max_z.kept_enclosure(sight, found)
+        let found = self.body.shape.certify(&sight.within(self.placement), precision);
+        self.max_z.kept_enclosure(sight, found)
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        let Body { shape, entity, .. } = &*self.shape.body;
+        let Body { shape, entity, .. } = &*self.body;
         shape.premises(entity.unwrap_or(of), each);
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
-        Some(&self.shape)
+        Some(self)
     }
 
     fn is_of_the_notes(&self) -> bool {
-        self.shape.body.shape.packets().is_of_the_notes()
+        self.body.shape.packets().is_of_the_notes()
     }
 }

@@ -1,8 +1,9 @@
 //! Hits of planes, and their certainty.
 
-use super::{Flat, Plane};
+use super::Plane;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::hittable::{Bracketed, Certified, Facts, Hittable, Sides};
 use glam::DVec3;
@@ -53,14 +54,10 @@ impl<A: Bounded> Bracketed for Plane<A> {
     fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
         self.quick_crossing(ray)
     }
-}
-
-impl<A: Bounded> Flat for Plane<A> {
-    type Accuracy = A;
 
     #[inline(always)]
-    fn flat(&self) -> Self {
-        *self
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+        Plane::refine_each(self, rays, out);
     }
 }
 

@@ -12,5 +12,4 @@ mod hits;
 mod products;
 mod surface;
 
-pub use flat::{ByPlane, Flat};
 pub use surface::{Plane, RoughCrossing};

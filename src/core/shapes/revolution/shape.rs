@@ -13,8 +13,8 @@ use crate::geometry::sight::Line;
 use crate::shapes::uv;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::Equation;
-use crate::world::hittable::{ByPackets, Certified, Facts, Hittable, Searched, Shape, Sides};
-use crate::world::packets::shape::{HitQueries, PacketIntersect, by_distance};
+use crate::world::hittable::{Certified, Facts, Hittable, Searched, Sides};
+use crate::world::packets::shape::{PacketIntersect, by_distance, queries_by_equation};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
 use tabray_exact::roots::Method;
@@ -126,19 +126,17 @@ impl Searched for InFrame<Revolution> {
     }
 }
 
-impl Shape<InFrame<Revolution>> {
-    /// Returns the shape, found by its own functions for packets.
-    pub fn in_packets(self) -> Shape<InFrame<Revolution>, ByPackets> {
-        self.by()
+queries_by_equation!(
+    [] InFrame<Revolution>,
+    |self| self,
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
+        Some(Searched::distance_by(self, method, ray, range))
     }
-}
+);
 
-impl<P> PacketIntersect for Shape<InFrame<Revolution>, ByPackets, P>
-where
-    Self: HitQueries,
-{
+impl PacketIntersect for InFrame<Revolution> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
-        let InFrame { surface, frame } = &self.shape;
+        let InFrame { surface, frame } = self;
         let mut lanes = Lanes::<MAX_RAYS>::none();
         for part in split(near.len(), MAX_RAYS) {
             surface.t_bounds(cpu, frame, rays.part(part.clone()), &ends[part.clone()], &mut lanes);
@@ -148,27 +146,27 @@ where
     }
 
     fn refine(&self, cpu: Cpu, rays: RayPacket, brackets: (&[f64], &[f64]), out: &mut [f64]) {
-        self.shape.surface.roots(cpu, &self.shape.frame, rays, brackets, out);
+        self.surface.roots(cpu, &self.frame, rays, brackets, out);
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
         let SurfaceInteraction { points, normals, sides, cosines, travelled, .. } = interaction;
-        let InFrame { surface, frame } = &self.shape;
+        let InFrame { surface, frame } = self;
         normal::interact(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         if !ray.is_single() {
-            return self.shape.surface.bracket(&self.shape.frame, ray, range);
+            return self.surface.bracket(&self.frame, ray, range);
         }
-        let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
+        let is_on_surface = || Certified::is_on_surface(self, ray.origin, range.origin_error);
         by_distance(ray, range, is_on_surface, |range| {
-            let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, range);
+            let (distance, is_certain) = self.surface.first_hit(&self.frame, ray, range);
             is_certain.then_some(distance)
         })
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }

@@ -1,7 +1,7 @@
 //! Solids as objects: one for each part with a visible surface.
 
 use super::shader::PartShader;
-use super::solid_part::{ByParts, SolidPart};
+use super::solid_part::SolidPart;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::placement::Placement;
 use crate::scene::entity::{Args, Refusal};
@@ -10,7 +10,6 @@ use crate::scene::pparm::Pparm;
 use crate::shapes::placed::Placed;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::{Body, NamedBody, Part, Solid};
-use crate::world::hittable::{ByPackets, Shape};
 use crate::world::material::Material;
 use crate::world::solid::{Operation, Tree, common};
 use std::sync::Arc;
@@ -213,8 +212,10 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let shape =
             SolidPart::new(&parts, &bounds, (index, is_outer), (tree, solid.tree.clone(), path), around);
         let part = &parts[index];
-        let shape = Shape::new(shape).by::<ByPackets, ByParts>();
-        Some(Body { material: Some(part.material.clone()), ..seen_as(&part.body, shape) })
+        Some(Body {
+            material: Some(part.material.clone()),
+            ..seen_as(&part.body, AnyShape::of_packets(shape))
+        })
     };
     let count = if solid.is_open { 1 } else { parts.len() };
     (0..count).filter_map(body).collect()

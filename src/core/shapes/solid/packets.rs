@@ -1,11 +1,11 @@
 //! Packets of rays that may hit a part of a solid.
 
-use super::solid_part::{ByParts, Known, SolidPart};
+use super::solid_part::{Known, SolidPart};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::{BEAM, Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction, split};
 use crate::simd::cpu::Cpu;
 use crate::world::coincidence::close;
-use crate::world::hittable::{ByPackets, Hittable, Shape};
+use crate::world::hittable::Hittable;
 use crate::world::packets::brackets;
 use crate::world::packets::shape::{self, PacketIntersect};
 
@@ -42,9 +42,9 @@ impl SolidPart {
     }
 }
 
-impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
+impl PacketIntersect for SolidPart {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
-        let (part, count) = (&self.shape, near.len());
+        let (part, count) = (self, near.len());
         if part.is_within_others() && rays.drift.is_none() {
             for lanes in split(count, BEAM) {
                 let brackets = (&mut near[lanes.clone()], &mut far[lanes.clone()]);
@@ -87,12 +87,12 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
     }
 
     fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
-        if !self.shape.is_whole() {
+        if !self.is_whole() {
             return brackets::closest_by_brackets(cpu, rays.len(), id, nearest, |ends, brackets| {
                 self.brackets(cpu, rays, ends, brackets);
             });
         }
-        self.shape.with_own_sides(rays, |own| self.shape.own().closest_hits(cpu, own, id, nearest))
+        self.with_own_sides(rays, |own| self.own().closest_hits(cpu, own, id, nearest))
     }
 
     fn occluded(
@@ -103,20 +103,20 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        if !self.shape.is_whole() {
+        if !self.is_whole() {
             let rays = rays.first(t_max.len());
             return brackets::occluded_by_brackets(cpu, t_max, blocked, doubt, |brackets| {
                 self.brackets(cpu, rays, t_max, brackets);
             });
         }
-        let own = self.shape.own().packets();
-        self.shape.with_own_sides(rays, |rays| own.occluded(cpu, rays, t_max, blocked, doubt))
+        let own = self.own().packets();
+        self.with_own_sides(rays, |rays| own.occluded(cpu, rays, t_max, blocked, doubt))
     }
 
     fn refine(&self, cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
-        if self.shape.is_whole() {
-            let own = self.shape.own().packets();
-            return self.shape.with_own_sides(rays, |rays| own.refine(cpu, rays, (near, far), out));
+        if self.is_whole() {
+            let own = self.own().packets();
+            return self.with_own_sides(rays, |rays| own.refine(cpu, rays, (near, far), out));
         }
         for lane in (0..out.len()).filter(|lane| near[*lane] != far[*lane]) {
             out[lane] = self.refine_one(&rays.get(lane), rays.side(lane));
@@ -124,18 +124,18 @@ impl PacketIntersect for Shape<SolidPart, ByPackets, ByParts> {
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        let own = self.shape.own().packets();
-        if !self.shape.is_outer && !own.finds_normals_by_rays() {
+        let own = self.own().packets();
+        if !self.is_outer && !own.finds_normals_by_rays() {
             return own.interact(cpu, rays, distances, interaction);
         }
-        shape::interact_each(cpu, &self.shape, rays, distances, interaction);
+        shape::interact_each(cpu, self, rays, distances, interaction);
     }
 
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
-        self.shape.t_bounds(ray, range)
+        self.t_bounds(ray, range)
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }

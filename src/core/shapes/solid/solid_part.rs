@@ -7,7 +7,7 @@ use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
 use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
-use crate::world::hittable::{ByPackets, Curvature, Facts, Hittable, Shape};
+use crate::world::hittable::{Curvature, Facts, Hittable};
 use crate::world::packets::shape::{HitQueries, by_distance};
 use crate::world::solid::Tree;
 use f256::f256;
@@ -25,9 +25,6 @@ const BESIDE: f64 = 256.0;
 /// The distance before a hit at which a ray is tested for being in the solid, as a fraction of the magnitude of the
 /// coordinates involved.
 const SHORTLY: f64 = 1e-6;
-
-/// Marks a shape that is only partly visible. Hits of the part are proven as hits of the shape.
-pub struct ByParts;
 
 /// Known facts about a ray before its search for a part of a solid.
 #[derive(Clone, Copy, Default)]
@@ -399,17 +396,17 @@ impl Hittable for SolidPart {
     }
 }
 
-impl HitQueries for Shape<SolidPart, ByPackets, ByParts> {
+impl HitQueries for SolidPart {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        let is_near =
-            self.shape.facts.bounds.is_none_or(|Aabb { low, high }| {
-                (low - error).cmple(at).all() && at.cmple(high + error).all()
-            });
-        is_near && self.shape.own().is_on_surface(at, error)
+        let is_near = self
+            .facts
+            .bounds
+            .is_none_or(|Aabb { low, high }| (low - error).cmple(at).all() && at.cmple(high + error).all());
+        is_near && self.own().is_on_surface(at, error)
     }
 
     fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
-        self.shape.holds(at, error)
+        self.holds(at, error)
     }
 
     fn is_of_solid(&self) -> bool {
@@ -417,23 +414,23 @@ impl HitQueries for Shape<SolidPart, ByPackets, ByParts> {
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-        self.shape.own().packets().fine_distance(ray, distance)
+        self.own().packets().fine_distance(ray, distance)
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         match precision {
-            Precision::Double => HitProofs::<f64>::first_hit(&self.shape, &sight.line(), None).0.into(),
-            Precision::Octuple => HitProofs::<f256>::first_hit(&self.shape, &sight.line(), None).0.into(),
+            Precision::Double => HitProofs::<f64>::first_hit(self, &sight.line(), None).0.into(),
+            Precision::Octuple => HitProofs::<f256>::first_hit(self, &sight.line(), None).0.into(),
         }
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        for Part { body, .. } in &*self.shape.parts {
+        for Part { body, .. } in &*self.parts {
             body.shape.premises(body.entity.unwrap_or(of), each);
         }
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
-        Some(&self.shape)
+        Some(self)
     }
 }

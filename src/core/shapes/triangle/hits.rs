@@ -4,7 +4,6 @@ use super::loose::LooseTriangle;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
-use crate::shapes::plane::{Flat, Plane};
 use crate::shapes::uv;
 use crate::world::accuracy::{AccuracyTag, Bounded};
 use crate::world::certify::Equation;
@@ -58,19 +57,15 @@ impl<A: Bounded> Bracketed for LooseTriangle<A> {
         // A certain hit lies inside the triangle.
         self.whole().plane.quick_crossing(ray)
     }
-}
-
-impl<A: Bounded> Flat for LooseTriangle<A> {
-    type Accuracy = A;
-
-    #[inline(always)]
-    fn flat(&self) -> Plane<A> {
-        self.whole().plane
-    }
 
     #[inline(always)]
     fn is_missed_by(&self, rays: RayPacket) -> bool {
         LooseTriangle::is_missed_by(self, rays)
+    }
+
+    #[inline(always)]
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+        self.whole().plane.refine_each(rays, out);
     }
 }
 

@@ -107,36 +107,54 @@ impl<T: Hittable + Equation, S> HitQueries for Shape<T, S, ByFormula> {
     }
 }
 
-/// Implements the proofs of hits by a shape's equation.
-macro_rules! by_equation {
-    ($Bound:ident, $Strategy:ty, $($more:tt)*) => {
-        impl<T: $Bound, S> HitQueries for Shape<T, S, $Strategy> {
-            fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-                self.shape.is_on_surface(at, error)
+/// Implements [`HitQueries`] for a type by the equation of a shape: the type, between its parameters and the shape as a
+/// place in `self`, and what is known more.
+#[macro_export]
+macro_rules! queries_by_equation {
+    ([$($parameters:tt)*] $Type:ty, |$self:ident| $shape:expr, $($more:tt)*) => {
+        impl<$($parameters)*> $crate::world::packets::shape::HitQueries for $Type {
+            fn is_on_surface(&$self, at: $crate::glam::DVec3, error: f64) -> bool {
+                $crate::world::hittable::Certified::is_on_surface($shape, at, error)
             }
 
-            fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
-                certify::contains(&self.shape, at, error)
+            fn contains(&$self, at: $crate::glam::DVec3, error: f64) -> Option<bool> {
+                $crate::world::certify::contains($shape, at, error)
             }
 
-            fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
-                self.shape.facet(at, error)
+            fn facet(
+                &$self,
+                at: $crate::glam::DVec3,
+                error: f64,
+            ) -> Option<$crate::geometry::facet::Facet> {
+                $crate::world::hittable::Certified::facet($shape, at, error)
             }
 
-            fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-                self.shape.fine_distance(ray, distance)
+            fn fine_distance(
+                &$self,
+                ray: &$crate::geometry::ray::Ray,
+                distance: f64,
+            ) -> Option<$crate::exact::double_double::DoubleDouble> {
+                $crate::world::hittable::Certified::fine_distance($shape, ray, distance)
             }
 
-            fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-                assumed(&self.shape, of, each);
+            fn premises(
+                &$self,
+                of: &'static str,
+                each: &mut dyn FnMut(&'static str, $crate::world::certify::Premise),
+            ) {
+                $crate::world::packets::shape::assumed($shape, of, each);
             }
 
-            fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-                certify::first_hit(&self.shape, sight, precision)
+            fn certify(
+                &$self,
+                sight: &$crate::geometry::sight::Sight,
+                precision: $crate::world::certify::Precision,
+            ) -> $crate::world::certify::Enclosure {
+                $crate::world::certify::first_hit($shape, sight, precision)
             }
 
-            fn proven(&self) -> Option<&dyn ProofMethods> {
-                Some(&self.shape)
+            fn proven(&$self) -> Option<&dyn $crate::world::certify::ProofMethods> {
+                Some($shape)
             }
 
             $($more)*
@@ -144,17 +162,19 @@ macro_rules! by_equation {
     };
 }
 
-by_equation!(Certified, ByEquation,);
-by_equation!(
-    Searched,
-    ByRoots,
+pub use queries_by_equation;
+
+queries_by_equation!([T: Certified, S] Shape<T, S, ByEquation>, |self| &self.shape,);
+queries_by_equation!(
+    [T: Searched, S] Shape<T, S, ByRoots>,
+    |self| &self.shape,
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
         Some(self.shape.distance_by(method, ray, range))
     }
 );
 
 /// Passes on the assumptions of proofs by a shape's equation.
-fn assumed(shape: &impl Hittable, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
+pub fn assumed(shape: &impl Hittable, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
     shape.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
 }
 

@@ -5,7 +5,7 @@
 //! [`ScalarIntersect`], except for shapes that take packets themselves. [`HitQueries`] tells what is certain about
 //! hits.
 
-pub use super::proofs::HitQueries;
+pub use super::proofs::{HitQueries, assumed, queries_by_equation};
 
 use super::brackets::{closest_by_brackets, occluded_by_brackets, of_beams};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
@@ -15,7 +15,9 @@ use crate::geometry::ray_packet::{
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 use crate::world::coincidence::close;
-use crate::world::hittable::{Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides, TieBreaking};
+use crate::world::hittable::{
+    Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides, TieBreaking, each_refined,
+};
 
 /// A shape of any type, with its interfaces for packets and proofs.
 pub trait PacketShape: PacketIntersect + HitQueries {
@@ -29,6 +31,13 @@ where
 {
     fn hittable(&self) -> &(dyn Hittable + 'static) {
         &self.shape
+    }
+}
+
+/// A shape with interfaces of its own.
+impl<T: Hittable + PacketIntersect + HitQueries + 'static> PacketShape for T {
+    fn hittable(&self) -> &(dyn Hittable + 'static) {
+        self
     }
 }
 
@@ -121,19 +130,7 @@ pub trait ScalarIntersect: Send + Sync {
     /// Writes the result of [`refine`](Self::refine) for each ray of a packet.
     #[inline(always)]
     fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
-        let (count, rays) = (out.len(), rays.first(out.len()));
-        match rays.leaving {
-            None => {
-                for lane in 0..count {
-                    out[lane] = self.refine(&rays.get(lane), None);
-                }
-            }
-            Some(sides) => {
-                for lane in 0..count {
-                    out[lane] = self.refine(&rays.get(lane), Some(sides[lane]));
-                }
-            }
-        }
+        each_refined(rays, out, |ray, side| self.refine(ray, side));
     }
 }
 
@@ -159,6 +156,16 @@ impl<T: Bracketed, P> ScalarIntersect for Shape<T, ByBracket, P> {
     #[inline(always)]
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         self.shape.refine(ray, origin_side)
+    }
+
+    #[inline(always)]
+    fn is_missed_by(&self, rays: RayPacket) -> bool {
+        self.shape.is_missed_by(rays)
+    }
+
+    #[inline(always)]
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+        self.shape.refine_each(rays, out);
     }
 }
 
@@ -214,10 +221,7 @@ pub fn by_distance(
 }
 
 /// Tests packets one ray after the other, in loops that the compiler vectorizes.
-impl<T: Hittable, S, P> PacketIntersect for Shape<T, S, P>
-where
-    Self: ScalarIntersect<Author = T>,
-{
+impl<T: ScalarIntersect> PacketIntersect for T {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         if Self::BY_BEAMS {
             let can_hit_itself = self.author().facts().can_hit_itself;
@@ -261,7 +265,7 @@ where
     }
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
-        interact_each(cpu, &self.shape, rays, distances, interaction);
+        interact_each(cpu, self.author(), rays, distances, interaction);
     }
 
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {

@@ -17,8 +17,8 @@ use crate::world::accuracy::{Accuracy, Bounded, Exact, Strict};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Assumption, Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
-use crate::world::hittable::{Bracketed, ByBracket, Facts, Hittable, Shape};
-use crate::world::packets::shape::{HitQueries, by_distance};
+use crate::world::hittable::{Facts, Hittable};
+use crate::world::packets::shape::{HitQueries, ScalarIntersect, by_distance};
 use f256::f256;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -34,29 +34,21 @@ struct Boundary<A> {
     depths: Arc<[Depth]>,
 }
 
-/// Marks a shape with hits proven by counting the faces that a ray crosses.
-struct ByWinding;
-
 impl Surface {
     /// Makes the shape of the boundary of a closed surface's inside. Returns `None` if the boundary is the whole
     /// surface, or if the surface is open.
     pub fn boundary(self: &Arc<Self>, accuracy: Accuracy) -> Option<AnyShape> {
         let depths = if self.is_closed() { self.depths()?.clone() } else { return None };
         Some(match accuracy {
-            Accuracy::Strict => Boundary::<Strict>::shape(self, depths, accuracy).into(),
-            _ => Boundary::<Exact>::shape(self, depths, accuracy).into(),
+            Accuracy::Strict => AnyShape::of_packets(Boundary::<Strict>::new(self, depths, accuracy)),
+            _ => AnyShape::of_packets(Boundary::<Exact>::new(self, depths, accuracy)),
         })
     }
 }
 
 impl<A: Bounded> Boundary<A> {
-    fn shape(
-        surface: &Arc<Surface>,
-        depths: Arc<[Depth]>,
-        accuracy: Accuracy,
-    ) -> Shape<Self, ByBracket, ByWinding> {
-        let mesh = Mesh::shape(surface.clone(), accuracy).shape;
-        Shape::new(Self { mesh, depths }).by()
+    fn new(surface: &Arc<Surface>, depths: Arc<[Depth]>, accuracy: Accuracy) -> Self {
+        Self { mesh: Mesh::new(surface.clone(), accuracy), depths }
     }
 
     /// Tells whether all of a face lies inside.
@@ -182,7 +174,13 @@ impl<A: Bounded> Hittable for Boundary<A> {
 }
 
 /// A camera ray that meets an edge in `f64` arithmetic is decided with the numbers of the scene.
-impl<A: Bounded> Bracketed for Boundary<A> {
+impl<A: Bounded> ScalarIntersect for Boundary<A> {
+    type Author = Self;
+
+    fn author(&self) -> &Self {
+        self
+    }
+
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let Aabb { low, high } = self.mesh.surface.bounds;
         let is_outside = ray.origin.cmplt(low).any() || ray.origin.cmpgt(high).any();
@@ -201,34 +199,34 @@ impl<A: Bounded> Bracketed for Boundary<A> {
     }
 }
 
-impl<A: Bounded> HitQueries for Shape<Boundary<A>, ByBracket, ByWinding> {
+impl<A: Bounded> HitQueries for Boundary<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
-        self.shape.is_on_surface(at, error)
+        self.is_on_surface(at, error)
     }
 
     fn contains(&self, at: DVec3, error: f64) -> Option<bool> {
-        (!self.shape.is_on_surface(at, error)).then(|| self.shape.is_inside(at))
+        (!self.is_on_surface(at, error)).then(|| self.is_inside(at))
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-        let face = self.shape.turn_at(ray, distance)?.face;
-        let fine = self.shape.mesh.surface.triangle::<A>(face).plane.exact_crossing(ray);
+        let face = self.turn_at(ray, distance)?.face;
+        let fine = self.mesh.surface.triangle::<A>(face).plane.exact_crossing(ray);
         let size = distance + ray.origin.abs().max_element();
         ((fine.high - distance).abs() <= CLOSE * size).then_some(fine)
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
-        self.shape.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
+        self.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         match precision {
-            Precision::Double => HitProofs::<f64>::first_hit(&self.shape, &sight.line(), None).0.into(),
-            Precision::Octuple => HitProofs::<f256>::first_hit(&self.shape, &sight.line(), None).0.into(),
+            Precision::Double => HitProofs::<f64>::first_hit(self, &sight.line(), None).0.into(),
+            Precision::Octuple => HitProofs::<f256>::first_hit(self, &sight.line(), None).0.into(),
         }
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
-        Some(&self.shape)
+        Some(self)
     }
 }
