@@ -74,16 +74,22 @@ impl Field {
         if !self.program().instructions.iter().any(|instruction| may_jump(instruction.step)) {
             return false;
         }
-        let mut jumps = 0;
-        let first = self.beside(at, 0, &mut jumps);
-        if jumps == 0 || jumps > MOST_JUMPS || first.has_zero() {
-            return false;
+        // On one side of a jump, others may occur than on the other side: the sides are the leaves of a tree.
+        let mut sides = 0;
+        loop {
+            let mut jumps = 0;
+            let value = self.beside(at, sides, &mut jumps);
+            if jumps == 0 || jumps > MOST_JUMPS || value.has_zero() {
+                return false;
+            }
+            let Some(last) = (0..jumps).rev().find(|jump| sides >> jump & 1 == 0) else { return true };
+            sides = sides & ((1 << last) - 1) | 1 << last;
         }
-        (1..1 << jumps).all(|sides| !self.beside(at, sides, &mut 0).has_zero())
     }
 
     /// Encloses the formula on one side of each jump and pole in a box: above it if its bit of `sides` is set, and
-    /// otherwise below it. Counts the jumps and poles. An operation that jumps more than once counts as too many.
+    /// otherwise below it. Counts the jumps and poles that occur there. An operation that jumps more than once counts
+    /// as too many.
     fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Interval<F> {
         let program = self.program();
         let mut registers = [at[0]; MOST_REGISTERS];
@@ -223,6 +229,7 @@ mod tests {
             ("tan(x) + z", near(1.0), false),
             ("tan(x) + z", near(std::f64::consts::FRAC_PI_2), true),
             ("atan2(x - 1, 1)", near(1.0), false),
+            ("acos(-0.5/x) - 2", [-1.5, 3.0], false),
         ] {
             let at = [Interval { low, high }, Interval::constant(0.3), Interval::constant(0.3)];
             assert_eq!(field(text).jumps_past_0(at), expected, "{text}");

@@ -6,6 +6,8 @@ mod domain;
 mod factors;
 pub mod field;
 mod function;
+#[cfg(test)]
+mod inclusion;
 pub mod nodes;
 mod own;
 mod parser;

@@ -291,7 +291,20 @@ impl Float for f256 {
     }
 
     fn atan2(self, x: Self) -> Self {
-        f256::atan2(&self, &x)
+        // The crate's angles are wrong if an argument is infinite, if both are equally large, and for -0.
+        let part = |of: Self| match of.is_infinite() {
+            true => Self::ONE.copysign(of),
+            false => Self::ZERO.copysign(of),
+        };
+        let is_far = self.is_infinite() || x.is_infinite();
+        let (y, x) = if is_far { (part(self), part(x)) } else { (self, x) };
+        let is_diagonal = y.abs() == x.abs() && !y.eq_zero();
+        let angle = match is_diagonal {
+            true if x.is_sign_negative() => Self::from(0.75) * Self::PI,
+            true => ::f256::consts::FRAC_PI_4,
+            false => f256::atan2(&y, &x),
+        };
+        angle.copysign(self)
     }
 
     fn floor(self) -> Self {
@@ -314,4 +327,20 @@ impl Float for f256 {
 /// Returns 1 or -1, with the sign of a number.
 fn sign(of: f256) -> f64 {
     if of.is_sign_negative() { -1.0 } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_of_237_bits_are_those_of_53_in_every_direction() {
+        let numbers = [f64::NEG_INFINITY, -2.0, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY];
+        for (y, x) in numbers.into_iter().flat_map(|y| numbers.map(|x| (y, x))) {
+            let (found, right) = (Float::atan2(f256::from(y), f256::from(x)).to_f64(), libm::atan2(y, x));
+            // The sign of 0 as x does not matter beside a y of 0, whose angle may be any.
+            let is_right = (found - right).abs() < 1e-15 || y == 0.0 && x == 0.0;
+            assert!(is_right, "the angle to {x}, {y} is {found}, and not {right}");
+        }
+    }
 }
