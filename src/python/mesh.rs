@@ -14,6 +14,7 @@ use tabray_core::scene::model::Model;
 use tabray_core::shapes::mesh::{Mesh as Shape, Surface};
 use tabray_core::text::count;
 use tabray_core::world::accuracy::{Accuracy, Exact};
+use tabray_core::world::any_shape::AnyShape;
 use tabray_lang::{Registry, reader};
 
 /// The number of points that are tested between two checks for a stop.

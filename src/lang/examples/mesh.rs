@@ -5,6 +5,7 @@ use tabray_core::glam::DVec3;
 use tabray_core::query::{ExactRay, Query};
 use tabray_core::shapes::mesh::{Mesh, Surface};
 use tabray_core::world::accuracy::{Accuracy, Exact};
+use tabray_core::world::any_shape::AnyShape;
 use tabray_lang::{Registry, reader};
 // Links the entity types, which register themselves.
 use tabray_plugins as _;
