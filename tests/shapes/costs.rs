@@ -183,12 +183,6 @@ impl HitQueries for Counted {
     }
 }
 
-impl PacketShape for Counted {
-    fn hittable(&self) -> &(dyn Hittable + 'static) {
-        self
-    }
-}
-
 /// A ball whose author gives nothing but its distance, its normal and its bounds.
 struct Bare;
 
