@@ -52,6 +52,7 @@ pub use crate::geometry::placement::Rotation;
 pub use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 pub use crate::geometry::sight::{Line, Sight};
 pub use crate::geometry::view_frame::{ViewFrame, half_tangent};
+pub use crate::shapes::Made;
 pub use crate::shapes::implicit::Implicit;
 pub use crate::shapes::parametric::Parametric;
 pub use crate::world::certify::{Equation, Precise};

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use tabray::exact::Scalar;
 use tabray::geometry::{Aabb, Bracket, Frame, ImagePoint, MISS, Ray, RayBall, RayRange, Side};
 use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
-use tabray::shapes::Implicit;
+use tabray::shapes::{Implicit, Made};
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
 use tabray::world::{

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use tabray::exact::Scalar;
 use tabray::geometry::{Frame, MISS, Ray, RayRange, Side};
 use tabray::scene::Model;
-use tabray::shapes::Implicit;
+use tabray::shapes::{Implicit, Made};
 use tabray::world::{AnyShape, Body, Facts, Hittable};
 
 const CENTER: DVec3 = DVec3::new(4.1, 2.9, -2.7);

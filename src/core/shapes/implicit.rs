@@ -43,18 +43,16 @@ const RAYS_PER_SEARCH: u32 = 32;
 /// The maximum number of roots in cut-away parts of the surface along a ray, for other methods than the shape's own.
 const MOST_CUT: usize = 64;
 
-impl Body {
-    /// Makes an object of an implicit surface. The material gives the reflectivities.
-    pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
-        let [low, high] = formula.bounds();
-        let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
-        let degree = formula.along([diagonal; 3]).degree();
-        let ends = [low.to_array(), high.to_array()];
-        let nodes = formula.field().zip(degree).and_then(|(field, degree)| Nodes::new(field, degree, ends));
-        let parts = Parts::new(low, high);
-        let shape = ImplicitShape { formula, degree, frame, low, high, parts, nodes };
-        Self::plain(Shape::new(shape).bracketed().searched())
-    }
+/// See [`Made::implicit`](crate::shapes::Made::implicit).
+pub(super) fn body(formula: impl Implicit + 'static, frame: Frame) -> Body {
+    let [low, high] = formula.bounds();
+    let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
+    let degree = formula.along([diagonal; 3]).degree();
+    let ends = [low.to_array(), high.to_array()];
+    let nodes = formula.field().zip(degree).and_then(|(field, degree)| Nodes::new(field, degree, ends));
+    let parts = Parts::new(low, high);
+    let shape = ImplicitShape { formula, degree, frame, low, high, parts, nodes };
+    Body::plain(Shape::new(shape).bracketed().searched())
 }
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {

@@ -6,6 +6,7 @@ mod ellipsoid;
 pub mod field;
 mod finite_plane;
 pub mod implicit;
+mod made;
 pub mod mesh;
 pub mod outline;
 pub mod parametric;
@@ -21,6 +22,7 @@ pub mod uv;
 
 pub use ellipsoid::Ellipsoid;
 pub use implicit::Implicit;
+pub use made::Made;
 pub use placed::Placed;
 pub use quadratic::Quadric;
 pub use revolution::{ClassicRevolution, InFrame, Refinement, Revolution};

@@ -31,17 +31,14 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{constants, per_axis};
 use tree::Tree;
 
-impl Body {
-    /// Makes an object of a parametric surface. The material gives the reflectivities. Returns `None` if the surface is
-    /// unbounded, or turns so often that the boxes of its parts do not locate them.
-    pub fn parametric(formula: impl Parametric + 'static) -> Option<Self> {
-        let ends = formula.ends();
-        let patches: Box<dyn Patches> = Box::new(formula);
-        let tree = Tree::new(&*patches, ends);
-        let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?.with_slack(0.0);
-        let shape = ParametricShape { patches, tree, bounds };
-        Some(Self::plain(AnyShape::of_packets(shape)))
-    }
+/// See [`Made::parametric`](crate::shapes::Made::parametric).
+pub(super) fn body(formula: impl Parametric + 'static) -> Option<Body> {
+    let ends = formula.ends();
+    let patches: Box<dyn Patches> = Box::new(formula);
+    let tree = Tree::new(&*patches, ends);
+    let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?.with_slack(0.0);
+    let shape = ParametricShape { patches, tree, bounds };
+    Some(Body::plain(AnyShape::of_packets(shape)))
 }
 
 /// The first hit of a single ray.

@@ -1,6 +1,6 @@
 //! Surfaces clipped by a closed object: cut open, or capped by the faces of that object.
 
-use super::make::NoSolid;
+use super::make::{NoSolid, body_of, solid_of};
 use crate::geometry::aabb::Aabb;
 use crate::scene::entity::{Args, Refusal};
 use crate::world::body::{Body, NamedBody, Part, Solid};
@@ -32,7 +32,7 @@ impl Clip {
             let message = "is clipped by an object that has not been made".to_owned();
             return Err(refusal(message, "define the object before the surface that it clips"));
         };
-        let solid = Solid::of(object).map_err(|fault| match fault {
+        let solid = solid_of(object).map_err(|fault| match fault {
             NoSolid::Open(name, why) => refusal(
                 format!("cannot be clipped by `{name}`, which is not a closed shape: {why}"),
                 "clip by a sphere, a box, or another closed shape",
@@ -78,7 +78,7 @@ impl Clip {
         let part = Part { name, body: Arc::new(surface), material, is_clipped: true };
         let own = Solid { parts: vec![part], tree: Tree::Part(0), is_open: false };
         let solid = Solid::combined(Operation::Intersection, [own, self.solid]);
-        let body = Body::of_solid(Solid { is_open: !is_capped, ..solid }, None).map_err(|fault| {
+        let body = body_of(Solid { is_open: !is_capped, ..solid }, None).map_err(|fault| {
             let (message, help) = fault.message();
             refusal(message, help)
         })?;

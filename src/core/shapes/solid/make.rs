@@ -30,7 +30,9 @@ pub type Objects = List<NamedBody, 2, 256>;
 pub fn combined(args: &Args, objects: &Pparm<Objects>, operation: Operation) -> Result<Body, Refusal> {
     let List(objects) = args.get(objects);
     let objects: Vec<_> = objects.iter().filter_map(|object| object.get().cloned()).collect();
-    Body::combined(operation, &objects, args.material_of_all()).map_err(|fault| {
+    let solids: Result<Vec<_>, _> = objects.iter().map(solid_of).collect();
+    let made = solids.and_then(|of| body_of(Solid::combined(operation, of), args.material_of_all()));
+    made.map_err(|fault| {
         let (message, help) = fault.message();
         Refusal { attribute: Some("objects"), message, help }
     })
@@ -73,107 +75,86 @@ impl NoSolid {
     }
 }
 
-impl Solid {
-    /// Returns a named object as a solid.
-    ///
-    /// # Errors
-    /// Fails if the object is open.
-    pub(super) fn of(object: &Arc<Body>) -> Result<Self, NoSolid> {
-        let name = object.name.clone().unwrap_or_default();
-        if let Some(solid) = &object.solid {
-            if solid.is_open {
-                return Err(NoSolid::Open(
-                    name,
-                    "its `clip` cuts it open; `capped yes` closes it".to_owned(),
-                ));
-            }
-            let named =
-                |part: &Part| Part { name: format!("{} of {name}", part.name).into(), ..part.clone() };
-            return Ok(Self { parts: solid.parts.iter().map(named).collect(), ..(**solid).clone() });
+/// Returns a named object as a solid.
+///
+/// # Errors
+/// Fails if the object is open.
+pub(super) fn solid_of(object: &Arc<Body>) -> Result<Solid, NoSolid> {
+    let name = object.name.clone().unwrap_or_default();
+    if let Some(solid) = &object.solid {
+        if solid.is_open {
+            return Err(NoSolid::Open(name, "its `clip` cuts it open; `capped yes` closes it".to_owned()));
         }
-        let body = match object.boundary() {
-            Some(shape) => Arc::new(Body { entity: object.entity, ..seen_as(object, shape) }),
-            None => object.clone(),
-        };
-        if let Some(why) = body.shape.why_not_closed() {
-            return Err(NoSolid::Open(name, why.to_owned()));
-        }
-        let material = object.material.clone().unwrap_or_default();
-        let part = Part { name, body, material, is_clipped: false };
-        Ok(Self { parts: vec![part], tree: Tree::Part(0), is_open: false })
+        let named = |part: &Part| Part { name: format!("{} of {name}", part.name).into(), ..part.clone() };
+        return Ok(Solid { parts: solid.parts.iter().map(named).collect(), ..(**solid).clone() });
     }
-
-    /// Returns the solid with each of its parts placed.
-    fn placed(&self, placement: Placement) -> Self {
-        let place = |part: &Part| Part {
-            body: Arc::new(Placed::body(&part.body, (placement, None), &part.material)),
-            ..part.clone()
-        };
-        Self { parts: self.parts.iter().map(place).collect(), ..self.clone() }
+    let body = match object.boundary() {
+        Some(shape) => Arc::new(Body { entity: object.entity, ..seen_as(object, shape) }),
+        None => object.clone(),
+    };
+    if let Some(why) = body.shape.why_not_closed() {
+        return Err(NoSolid::Open(name, why.to_owned()));
     }
+    let material = object.material.clone().unwrap_or_default();
+    let part = Part { name, body, material, is_clipped: false };
+    Ok(Solid { parts: vec![part], tree: Tree::Part(0), is_open: false })
 }
 
-impl Body {
-    /// Makes a solid of named objects. Without a material, each object keeps its own.
-    ///
-    /// # Errors
-    /// Returns the reason why the objects make no solid.
-    fn combined(
-        operation: Operation,
-        objects: &[Arc<Self>],
-        material: Option<Arc<Material>>,
-    ) -> Result<Self, NoSolid> {
-        let solids: Result<Vec<_>, _> = objects.iter().map(Solid::of).collect();
-        Self::of_solid(Solid::combined(operation, solids?), material)
-    }
+/// Returns the solid with each of its parts placed.
+fn placed_solid(solid: &Solid, placement: Placement) -> Solid {
+    let place = |part: &Part| Part {
+        body: Arc::new(Placed::body(&part.body, (placement, None), &part.material)),
+        ..part.clone()
+    };
+    Solid { parts: solid.parts.iter().map(place).collect(), ..solid.clone() }
+}
 
-    /// Makes the union of closed shapes, each with its name and material. An object may consist of several shapes.
-    ///
-    /// # Errors
-    /// Returns the reason why the shapes make no solid.
-    pub fn union(of: impl IntoIterator<Item = (String, Self, Arc<Material>)>) -> Result<Self, Refusal> {
-        let solids = of.into_iter().map(|(name, body, material)| {
-            Solid::of(&Arc::new(Self { name: Some(name.into()), material: Some(material), ..body }))
-        });
-        let solids: Result<Vec<_>, _> = solids.collect();
-        let made = solids.and_then(|of| Self::of_solid(Solid::combined(Operation::Union, of), None));
-        made.map_err(|fault| {
-            let (message, help) = fault.message();
-            Refusal { attribute: None, message, help }
-        })
-    }
+/// See [`Made::union`](crate::shapes::Made::union).
+pub(crate) fn union(of: impl IntoIterator<Item = (String, Body, Arc<Material>)>) -> Result<Body, Refusal> {
+    let solids = of.into_iter().map(|(name, body, material)| {
+        solid_of(&Arc::new(Body { name: Some(name.into()), material: Some(material), ..body }))
+    });
+    let solids: Result<Vec<_>, _> = solids.collect();
+    let made = solids.and_then(|of| body_of(Solid::combined(Operation::Union, of), None));
+    made.map_err(|fault| {
+        let (message, help) = fault.message();
+        Refusal { attribute: None, message, help }
+    })
+}
 
-    /// Makes a copy of an object, which may be a solid, with the given material or its own. A copy of a plane ends at
-    /// `max_z`, in world space, if given.
-    pub fn placed(
-        object: &Arc<Self>,
-        (placement, max_z): (Placement, Option<f64>),
-        material: Option<Arc<Material>>,
-    ) -> Self {
-        if let Some(solid) = &object.solid
-            && let Ok(copy) = Self::of_solid(solid.placed(placement), material.clone())
-        {
-            return copy;
-        }
-        let material = material.or_else(|| object.material.clone()).unwrap_or_default();
-        let copy = Placed::body(object, (placement, max_z), &material);
-        Self { material: Some(material), ..copy }
+/// See [`Made::placed`](crate::shapes::Made::placed).
+pub(crate) fn placed(
+    object: &Arc<Body>,
+    (placement, max_z): (Placement, Option<f64>),
+    material: Option<Arc<Material>>,
+) -> Body {
+    if let Some(solid) = &object.solid
+        && let Ok(copy) = body_of(placed_solid(solid, placement), material.clone())
+    {
+        return copy;
     }
+    let material = material.or_else(|| object.material.clone()).unwrap_or_default();
+    let copy = Placed::body(object, (placement, max_z), &material);
+    Body { material: Some(material), ..copy }
+}
 
-    pub(super) fn of_solid(mut solid: Solid, material: Option<Arc<Material>>) -> Result<Self, NoSolid> {
-        if solid.parts.len() > MOST_PARTS {
-            return Err(NoSolid::TooMany);
-        }
-        if solid.tree.depth() > DEEPEST {
-            return Err(NoSolid::TooDeep);
-        }
-        if let Some(material) = material {
-            solid.parts.iter_mut().for_each(|part| part.material = material.clone());
-        }
-        let mut seen = seen(&solid).into_iter();
-        let first = seen.next().ok_or(NoSolid::Empty)?;
-        Ok(Self { more: seen.collect(), solid: Some(Box::new(solid)), ..first })
+/// Makes the objects of a solid. Without a material, each part keeps its own.
+///
+/// # Errors
+/// Returns the reason why there are none.
+pub(super) fn body_of(mut solid: Solid, material: Option<Arc<Material>>) -> Result<Body, NoSolid> {
+    if solid.parts.len() > MOST_PARTS {
+        return Err(NoSolid::TooMany);
     }
+    if solid.tree.depth() > DEEPEST {
+        return Err(NoSolid::TooDeep);
+    }
+    if let Some(material) = material {
+        solid.parts.iter_mut().for_each(|part| part.material = material.clone());
+    }
+    let mut seen = seen(&solid).into_iter();
+    let first = seen.next().ok_or(NoSolid::Empty)?;
+    Ok(Body { more: seen.collect(), solid: Some(Box::new(solid)), ..first })
 }
 
 /// Returns a body with another shape and the appearance of an object.

@@ -20,3 +20,4 @@ mod solid_part;
 pub use clip::Clip;
 pub(crate) use crossings::{Crossing, Crossings};
 pub use make::{Objects, combined};
+pub(crate) use make::{placed, union};
