@@ -56,8 +56,9 @@ impl<A: Bounded> Bracketed for FinitePlane<A> {
     }
 
     #[inline(always)]
-    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) -> bool {
         self.plane.refine_each(rays, out);
+        true
     }
 }
 

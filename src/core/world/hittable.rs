@@ -174,28 +174,11 @@ pub trait Bracketed: Hittable {
         false
     }
 
-    /// Writes the result of [`refine`](Self::refine) for each ray of a packet.
+    /// Writes the result of [`refine`](Self::refine) for each ray of a packet, if that takes less time for all of them than
+    /// one by one, and tells whether it did.
     #[inline(always)]
-    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
-        each_refined(rays, out, |ray, side| self.refine(ray, side));
-    }
-}
-
-/// Writes the distance of each ray of a packet, given the side of the shape that it leaves.
-#[inline(always)]
-pub(crate) fn each_refined(rays: RayPacket, out: &mut [f64], refine: impl Fn(&Ray, Option<Side>) -> f64) {
-    let (count, rays) = (out.len(), rays.first(out.len()));
-    match rays.leaving {
-        None => {
-            for lane in 0..count {
-                out[lane] = refine(&rays.get(lane), None);
-            }
-        }
-        Some(sides) => {
-            for lane in 0..count {
-                out[lane] = refine(&rays.get(lane), Some(sides[lane]));
-            }
-        }
+    fn refine_each(&self, _rays: RayPacket, _out: &mut [f64]) -> bool {
+        false
     }
 }
 

@@ -56,8 +56,9 @@ impl<A: Bounded> Bracketed for Plane<A> {
     }
 
     #[inline(always)]
-    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) -> bool {
         Plane::refine_each(self, rays, out);
+        true
     }
 }
 

@@ -64,8 +64,9 @@ impl<A: Bounded> Bracketed for LooseTriangle<A> {
     }
 
     #[inline(always)]
-    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
+    fn refine_each(&self, rays: RayPacket, out: &mut [f64]) -> bool {
         self.whole().plane.refine_each(rays, out);
+        true
     }
 }
 

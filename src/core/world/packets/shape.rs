@@ -15,9 +15,7 @@ use crate::geometry::ray_packet::{
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 use crate::world::coincidence::close;
-use crate::world::hittable::{
-    Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides, TieBreaking, each_refined,
-};
+use crate::world::hittable::{Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides, TieBreaking};
 
 /// A shape of any type, with its interfaces for packets and proofs.
 pub trait PacketShape: PacketIntersect + HitQueries {
@@ -130,7 +128,25 @@ pub trait ScalarIntersect: Send + Sync {
     /// Writes the result of [`refine`](Self::refine) for each ray of a packet.
     #[inline(always)]
     fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
-        each_refined(rays, out, |ray, side| self.refine(ray, side));
+        refine_one_by_one(self, rays, out);
+    }
+}
+
+/// Writes the result of [`ScalarIntersect::refine`] for each ray of a packet. A closure would not be inlined.
+#[inline(always)]
+fn refine_one_by_one(shape: &(impl ScalarIntersect + ?Sized), rays: RayPacket, out: &mut [f64]) {
+    let (count, rays) = (out.len(), rays.first(out.len()));
+    match rays.leaving {
+        None => {
+            for lane in 0..count {
+                out[lane] = shape.refine(&rays.get(lane), None);
+            }
+        }
+        Some(sides) => {
+            for lane in 0..count {
+                out[lane] = shape.refine(&rays.get(lane), Some(sides[lane]));
+            }
+        }
     }
 }
 
@@ -165,7 +181,9 @@ impl<T: Bracketed, P> ScalarIntersect for Shape<T, ByBracket, P> {
 
     #[inline(always)]
     fn refine_each(&self, rays: RayPacket, out: &mut [f64]) {
-        self.shape.refine_each(rays, out);
+        if !self.shape.refine_each(rays, out) {
+            refine_one_by_one(self, rays, out);
+        }
     }
 }
 
