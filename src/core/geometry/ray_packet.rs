@@ -18,6 +18,7 @@ pub const PACKET_SIZE: usize = 256;
 pub const BEAM: usize = 16;
 
 /// Splits the lanes of `count` rays into consecutive ranges of at most `max_size` lanes.
+#[inline]
 pub fn split(count: usize, max_size: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count).step_by(max_size).map(move |first| first..count.min(first + max_size))
 }

@@ -129,6 +129,7 @@ impl Object {
     }
 
     /// Returns the point where a ray hits the surface on this side, with the properties that the shader sees.
+    #[inline]
     pub fn surface_point(&self, position: DVec3, side: Side) -> SurfacePoint {
         let sees = self.shader.sees();
         if sees.is_position() {
@@ -145,6 +146,7 @@ impl Object {
     /// Returns the fraction of light that passes through at this point, for each channel: transparency times the
     /// diffuse colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey. The fraction
     /// is at most 1, and below 0 where the diffuse colour is below 0.
+    #[inline]
     pub fn tint(&self, at: &SurfacePoint) -> Rgb {
         let diffuse = self.shader.diffuse(&self.material, at);
         let strongest = diffuse.max_element();

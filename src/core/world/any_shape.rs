@@ -54,6 +54,7 @@ impl AnyShape {
     }
 
     /// Tells whether the shape may be culled because no part of it lies in a region.
+    #[inline]
     pub fn is_culled_in(&self, region: &Aabb) -> bool {
         self.is_clear_of(region) && !self.shape.is_of_the_notes()
     }
