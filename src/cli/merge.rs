@@ -8,7 +8,7 @@ use crate::process::progress::Progress;
 use crate::process::{memory, messages};
 use crate::rendering::part::beside as beside_image;
 use crate::rendering::part_files::{Parts, open, refuse};
-use crate::rendering::{aov, full_range};
+use crate::rendering::{aov, bands};
 use std::fs;
 use std::io::{self, BufWriter};
 use std::iter;
@@ -21,7 +21,7 @@ use tabray_core::output::picture::Format;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TILE;
 use tabray_core::text;
-use tabray_tools::part::{self, PixelFormat, Reader};
+use tabray_tools::pixels::{self, PixelFormat, Reader};
 
 /// The maximum number of parts that are named in a message.
 const NAMED: usize = 12;
@@ -181,10 +181,7 @@ impl Parts {
 
     fn full_range(&self, path: &Path, format: FullRange) -> Result<(), Failure> {
         let [width, height] = self.label.size;
-        memory::refuse_too_large(
-            full_range::PIXEL.saturating_mul(width).saturating_mul(height),
-            "the image",
-        )?;
+        memory::refuse_too_large(bands::PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
         let out = self.open(path)?;
         let bytes = self.all(12)?;
         let pixels: Vec<f32> = bytes.as_chunks().0.iter().map(|number| f32::from_le_bytes(*number)).collect();
@@ -209,7 +206,7 @@ impl Parts {
     fn rows(&self, pixel: usize) -> impl Iterator<Item = Result<Vec<u8>, Failure>> + '_ {
         let (mut paths, mut reader) = (self.paths.iter(), None::<(&PathBuf, Reader)>);
         let grid = self.label.grid();
-        part::strips(grid, 0..grid.count(), pixel, move |index, tile| {
+        pixels::strips(grid, 0..grid.count(), pixel, move |index, tile| {
             let (path, reader) = match &mut reader {
                 Some((path, reader)) if reader.label.tiles[1] != index => (path, reader),
                 reader => {

@@ -8,10 +8,13 @@ use crate::options::stop::Stop;
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
 use crate::process::messages;
+use crate::rendering::bands::TileRender;
 use crate::rendering::job::Job;
+use crate::rendering::stats::Stats;
 use std::io::Write;
 use std::path::Path;
 use tabray_core::output::picture::Format;
+use tabray_core::render::division::Grid;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::tiles::BAND;
 use tabray_core::text::visible_lines;
@@ -33,16 +36,16 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let _ = write!(std::io::stderr(), "{}", visible_lines(&dump::notes(&model)));
     // The dump comes first, as the course's logs have it.
     messages::warnings(&warnings);
-    let job = Job {
+    let region = Region::whole(&model.camera.value);
+    let tiles = TileRender {
         plan: &Plan::new(&model),
-        region: &Region::whole(&model.camera.value),
+        region: &region,
+        tiles: 0..Grid { size: region.size() }.count(),
         renderer: &renderer_with(0)?,
-        format: Format::Ppm,
-        path: standard,
-        made: &[],
         at_once: BAND,
         stop: &Stop::default(),
-        stats: None,
+        stats: &Stats::default(),
+        counts: false,
     };
-    job.run(output, None).map(|_| ())
+    Job { tiles, path: standard, made: &[] }.bytes(output, Format::Ppm, None).map(|_| ())
 }

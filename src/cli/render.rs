@@ -11,10 +11,11 @@ use crate::options::stop::{self, Stop};
 use crate::options::{cpu, frames, keep, method, samples, set, size, threads};
 use crate::process::failure::Failure;
 use crate::process::{messages, progress};
-use crate::rendering::job::{self, Job};
+use crate::rendering::bands::{PIXEL, TileRender};
+use crate::rendering::job::{Job, refuse_full_range};
 use crate::rendering::resume::ResumedImage;
 use crate::rendering::stats::{self, Stats};
-use crate::rendering::{aov, debug, full_range, part, resume};
+use crate::rendering::{aov, debug, flaws, part, resume};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
@@ -22,6 +23,8 @@ use tabray_core::output::aov::Aov;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::full_range::FullRange;
 use tabray_core::output::picture::Format;
+use tabray_core::render::division::Grid;
+use tabray_core::render::tiles::TILE;
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::text;
@@ -29,7 +32,6 @@ use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::{self, Loaded, ReadOptions};
 use tabray_lang::registry::Registry;
 use tabray_tools::diagnosis;
-use tabray_tools::part::PixelFormat;
 
 /// Render scenes to images
 #[derive(clap::Args)]
@@ -319,31 +321,39 @@ impl ImageRender<'_> {
         // The text of a large scene takes as much memory as its model.
         let source = (!beside.is_empty()).then_some(source);
         if self.full_range.is_some() && args.stop.resume {
-            return Err(full_range::refuse(path, "resumed"));
+            return Err(refuse_full_range(path, "resumed"));
         }
-        let begun = ResumedImage::open(args.continues(path), &model, &region, path, &output)?;
+        let begun = ResumedImage::open(args.continues(path), path, &output, || {
+            resume::label(&model, &region, format, &self.made)
+        })?;
         debug::print(&model, &args.debug)?;
         let start = Instant::now();
         let plan = args.keep.plan(&model);
         stats.building += start.elapsed();
         let renderer = args.threads.renderer_for(region.rows.len())?.on(self.cpu);
+        let [width, height] = region.size();
+        let at_once = match self.full_range {
+            Some(_) => {
+                args.stop.refuse_too_large(PIXEL * width * height)?;
+                width * height.next_multiple_of(TILE)
+            }
+            None => args.stop.band(width)?,
+        };
         let whole = Instant::now();
-        if let Some(format) = self.full_range {
-            args.stop.refuse_too_large(full_range::PIXEL * region.columns.len() * region.rows.len())?;
-            full_range::render((&plan, &region), (&renderer, stop), (format, path), output, &stats)?;
-        } else {
-            let job = Job {
-                plan: &plan,
-                region: &region,
-                renderer: &renderer,
-                format,
-                path,
-                made: &self.made,
-                at_once: args.stop.band(region.columns.len())?,
-                stop,
-                stats: args.stats.wants_any().then_some(&stats),
-            };
-            render_bytes(&job, (output, begun), &self.differences, start)?;
+        let tiles = TileRender {
+            plan: &plan,
+            region: &region,
+            tiles: 0..Grid { size: region.size() }.count(),
+            renderer: &renderer,
+            at_once,
+            stop,
+            stats: &stats,
+            counts: args.stats.wants_any(),
+        };
+        let job = Job { tiles, path, made: &self.made };
+        match self.full_range {
+            Some(format) => job.full_range(output, format)?,
+            None => render_bytes(&job, (output, format, begun), &self.differences, start)?,
         }
         stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
         args.stats.print(&stats, &model);
@@ -366,20 +376,25 @@ impl ImageRender<'_> {
         let start = Instant::now();
         let plan = args.keep.plan(model);
         stats.building += start.elapsed();
-        let main = args.main(path);
-        let part = part::PartRender {
-            part: number,
-            made: &self.made,
+        let renderer = args.threads.renderer()?.on(self.cpu);
+        let tiles = TileRender {
             plan: &plan,
             region,
-            renderer: &args.threads.renderer()?.on(self.cpu),
-            paths: [path, &main],
-            what: self.full_range.map_or(PixelFormat::picture(*format), PixelFormat::full_range),
-            beside: &beside,
-            format: *format,
+            tiles: part::tiles(number, region, &plan, &renderer)?,
+            renderer: &renderer,
             at_once: args.stop.band(region.columns.len())?,
             stop,
             stats: &stats,
+            counts: args.stats.wants_any(),
+        };
+        let part = part::PartRender {
+            part: number,
+            made: &self.made,
+            tiles,
+            paths: [path, &args.main(path)],
+            full_range: self.full_range,
+            beside: &beside,
+            format: *format,
         };
         let whole = Instant::now();
         let exact = || read_exact(&self.source, self.registry, model, args.stop.memory_left());
@@ -406,12 +421,12 @@ fn read_exact(
 /// Renders an image of bytes, and tells what was written since a time, unless that is standard output.
 fn render_bytes(
     job: &Job,
-    (output, begun): (Output, Option<ResumedImage>),
+    (output, format, begun): (Output, Format, Option<ResumedImage>),
     differences: &Differences,
     start: Instant,
 ) -> Result<(), Failure> {
-    let (levels, far) = job.run(output, begun)?;
-    let &Job { plan, region, path, .. } = job;
+    let levels = job.bytes(output, format, begun)?;
+    let &Job { tiles: TileRender { plan, region, stats, .. }, path, .. } = job;
     if path == Path::new("-") {
         return Ok(());
     }
@@ -422,7 +437,7 @@ fn render_bytes(
         text::shown(path)
     ));
     differences.print();
-    job::tell_of_far(far);
+    flaws::tell_of_far(stats.tally.flaws().far);
     if !reader::is_black(plan.model) {
         messages::remark(diagnosis::remark(plan, [&region.columns, &region.rows], &levels));
     }

@@ -267,6 +267,58 @@ fn parts_that_do_not_belong_together_are_refused_with_the_reason() {
     is_the_same(&folder);
 }
 
+/// Older versions wrote parts of another format, and checkpoints that are PNGs with a text.
+#[test]
+fn what_an_older_version_left_is_refused_and_stays() {
+    let folder = folder();
+    let older = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\x06\0\0\0\x1f\x15\xc4\x89\0\0\0\x19iTXttabray checkpoint\0";
+    fs::copy(scene("sphere/in-front.ray"), folder.path().join("a.ray")).expect("a copy");
+    for (name, bytes, args, help) in [
+        (
+            "a.png.checkpoint",
+            &older[..],
+            &["render", "a.ray", "-o", "a.png", "--resume"][..],
+            "leave out `--resume`",
+        ),
+        (
+            "b.png.part-1-of-1.checkpoint",
+            older,
+            &["render", "a.ray", "-o", "b.png", "--resume", "--part", "1/1"],
+            "leave out `--resume`",
+        ),
+        (
+            "c.png.part-1-of-1",
+            b"tabray part 1\n{\"part\":[1,1]}\n",
+            &["merge", "c.png"],
+            "render the parts again",
+        ),
+    ] {
+        fs::write(folder.path().join(name), bytes).expect("a file");
+        let (status, said) = run(&folder, args);
+        let says =
+            format!("error: cannot read `{name}`: it is of an older version of tabray\n |\n = help: {help}");
+        assert!(status == 2 && said.starts_with(&says), "{said}");
+        assert!(fs::read(folder.path().join(name)).expect("still there") == bytes);
+    }
+}
+
+#[test]
+fn an_unfinished_part_is_not_merged() {
+    let folder = folder();
+    let scene = scene(SCENE);
+    let words =
+        ["render", scene.to_str().expect("a path"), "-o", "a.png", "--part", "1/1", "--samples", "256"];
+    let (checkpoint, mut limit) = ("a.png.part-1-of-1.checkpoint", 20);
+    while !folder.path().join(checkpoint).exists() {
+        let (status, said) = run(&folder, &[&words[..], &["--time-limit", &format!("{limit}ms")]].concat());
+        assert_eq!(status, 130, "{said}");
+        limit += limit / 10;
+    }
+    let (status, said) = run(&folder, &["merge", "a.png", checkpoint]);
+    let says = format!("cannot read `{checkpoint}`: it is a checkpoint of an unfinished part");
+    assert!(status == 2 && said.contains(&says) && !folder.path().join("a.png").exists(), "{said}");
+}
+
 #[test]
 fn parts_that_there_cannot_be_are_refused() {
     let folder = folder();

@@ -16,9 +16,10 @@ use crate::options::size::Region;
 use crate::rendering::resume::{self, ResumedImage};
 use hyper::Request;
 use hyper::body::Bytes;
+use sha2::{Digest, Sha256};
 use std::cell::Cell;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
@@ -26,17 +27,18 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::task::{Context, Poll};
-use tabray_core::render::tiles::{Band, TILE, Tiles};
+use tabray_core::output::picture::Format;
+use tabray_core::render::tiles::Band;
 use tabray_core::scene::model::Model;
 use tabray_lang::reader::Loaded;
 use tabray_lang::registry::Registry;
-use tabray_tools::checkpoint::{self, Identity};
+use tabray_tools::pixels::{Label, Writer, take_tile};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::runtime::{Builder, Runtime};
 
 /// An image that is rendered in parts, with a checkpoint in between.
 pub struct Image {
-    identity: Identity,
+    label: Label,
     part: Region,
 }
 
@@ -44,38 +46,37 @@ impl Image {
     /// Begins the image of a model.
     pub fn new(model: &Model) -> Option<Self> {
         let part = Region::whole(&model.camera.value);
-        let identity = resume::identity(model, &part).ok()?;
-        Some(Self { identity, part })
+        let label = resume::label(model, &part, Format::Ppm, &[]).ok()?;
+        Some(Self { label, part })
     }
 
     /// Makes the checkpoint of an image with these pixels, of which only these tiles are rendered; both in rows from the
     /// top, each from the left.
     ///
     /// # Errors
-    /// None but those of the PNG.
+    /// None: it is written to memory.
     pub fn checkpoint(&self, pixels: &[[u8; 3]], tiles: &[bool]) -> io::Result<Vec<u8>> {
-        let (band, size) = (self.blank(), self.part.size());
-        for (index, (pixels, tiles)) in
-            pixels.chunks(TILE * size[0]).zip(tiles.chunks(size[0].div_ceil(TILE))).enumerate()
-        {
-            let mut strip = band.strip(index);
-            strip.pixels.copy_from_slice(pixels);
-            strip.tiles.copy_from_slice(tiles);
+        let (mut writer, mut bytes) = (Writer::new(Vec::new(), &self.label)?, Vec::new());
+        for (tile, is_done) in tiles.iter().enumerate() {
+            let place = self.label.grid().tile(tile);
+            take_tile(pixels.as_flattened(), 3 * self.label.size[0], place, 3, &mut bytes);
+            writer.tile(is_done.then_some(&bytes))?;
         }
-        let mut is_rendered = Tiles::none(size);
-        is_rendered.add(&band);
-        let (mut bytes, mut left) = (Vec::new(), pixels.as_flattened());
-        checkpoint::write(&mut bytes, size, &self.identity, &is_rendered, |row| left.read_exact(row))?;
-        Ok(bytes)
+        writer.finish()
+    }
+
+    /// Replaces the checksum at the end of a checkpoint with the right one.
+    pub fn with_checksum(file: &[u8]) -> Vec<u8> {
+        let text = &file[..file.len().saturating_sub(32)];
+        [text, &Sha256::digest(text)].concat()
     }
 
     /// Continues from a checkpoint: returns all pixels, and which tiles need not be rendered any more. Nothing where the
     /// checkpoint is refused.
     pub fn resume(&self, file: File) -> Option<(Vec<[u8; 3]>, Vec<bool>)> {
-        let mut begun = ResumedImage::read(PathBuf::new(), Ok(file)).ok()?;
-        begun.refuse_other_image(&self.identity, self.part.size()).ok()?;
-        let band = self.blank();
-        begun.fill(&band).ok()?;
+        let mut begun = ResumedImage::read(PathBuf::new(), Ok(file), &self.label).ok()?;
+        let band = Band::blank(self.part.columns.clone(), self.part.rows.clone());
+        begun.fill(&band, 0).ok()?;
         let (mut pixels, mut tiles) = (Vec::new(), Vec::new());
         for index in 0..band.strips.len() {
             let strip = band.strip(index);
@@ -83,10 +84,6 @@ impl Image {
             tiles.extend_from_slice(&strip.tiles);
         }
         Some((pixels, tiles))
-    }
-
-    fn blank(&self) -> Band {
-        Band::blank(self.part.columns.clone(), self.part.rows.clone())
     }
 }
 

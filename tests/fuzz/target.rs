@@ -325,8 +325,8 @@ thread_local! {
     };
 }
 
-/// Reads the file of a checkpoint: arbitrary bytes, or a genuine file with some changes, whose checksums may be
-/// repaired. Nothing wrong is taken from it unless the checksums are repaired.
+/// Reads the file of a checkpoint: arbitrary bytes, or a genuine file with some changes, whose checksum may be
+/// repaired. Nothing wrong is taken from it unless the checksum is repaired.
 pub fn checkpoint(bytes: &[u8]) {
     let [kind, changes @ ..] = bytes else { return };
     UNFINISHED_IMAGE.with(|Unfinished { image, pixels, checkpoints: [one, other] }| {
@@ -341,8 +341,8 @@ pub fn checkpoint(bytes: &[u8]) {
             0 => return assert!(resume(changes).is_none(), "something is not a checkpoint of this program"),
             1 => resume(&changed(&one.1, &other.1, changes)),
             _ => {
-                // Checksums protect against damaged files, not against a person.
-                resume(&with_checksums(&changed(&one.1, &other.1, changes)));
+                // A checksum protects against damaged files, not against a person.
+                resume(&Image::with_checksum(&changed(&one.1, &other.1, changes)));
                 return;
             }
         };

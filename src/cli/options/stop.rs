@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 use tabray_core::render::tiles::{BAND, TILE};
 use tabray_core::text;
 
-/// The time to leave an unfinished image, as a multiple of the time in which it was written: it is read and written
-/// again with transparency. The time limit includes that, up to a quarter of the limit.
+/// The time to leave an unfinished image, as a multiple of the time in which it was written: it is read, and written
+/// again as a checkpoint and with transparency. The time limit includes that, up to a quarter of the limit.
 const LEAVING: u32 = 3;
 
 /// The interval at which time and memory are checked.

@@ -10,8 +10,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tabray_core::files;
 use tabray_core::text;
-use tabray_tools::checkpoint::Identity;
-use tabray_tools::part::{Label, PixelFormat, Reader};
+use tabray_tools::identity::Identity;
+use tabray_tools::pixels::{Label, PixelFormat, Reader};
 
 /// The maximum number of runs of missing parts that are named in a message.
 const RUNS: usize = 12;
@@ -177,8 +177,19 @@ fn same((path, label): (&Path, &Label), (other, first): (&Path, &Label)) -> Resu
     ))
 }
 
+/// Opens a part, which must be whole.
 pub fn open(path: &Path) -> Result<Reader, Failure> {
-    files::open(path).and_then(Reader::open).map_err(|error| Failure::cannot_read(path, &error))
+    let whole = |reader: Reader| match reader.done.is_whole() {
+        true => Ok(reader),
+        false => Err(io::Error::new(io::ErrorKind::InvalidData, "it is a checkpoint of an unfinished part")),
+    };
+    let opened = files::open(path).and_then(Reader::open).and_then(whole);
+    opened.map_err(|error| match error.kind() {
+        io::ErrorKind::Unsupported => {
+            refuse(format!("cannot read `{}`: {error}", text::shown(path)), "render the parts again")
+        }
+        _ => Failure::cannot_read(path, &error),
+    })
 }
 
 pub fn refuse(message: String, help: &str) -> Failure {

@@ -8,16 +8,21 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tabray_core::files;
-use tabray_core::output::picture::Format;
-use tabray_core::render::tiles::{Band, Tiles};
+use tabray_core::output::picture::{AS_SHOWN, Format, Rows};
+use tabray_core::render::division::Grid;
+use tabray_core::render::tiles::{Band, TILE};
 use tabray_core::scene::model::Model;
 use tabray_core::text;
-use tabray_tools::checkpoint::{self, Checkpoint, Identity};
+use tabray_tools::identity::Identity;
+use tabray_tools::pixels::{Label, PixelFormat, Reader, TileSet, Writer, take_tile};
+
+/// The message if a render is stopped before its first tile is finished.
+pub const NOTHING: &str = "nothing has been rendered yet, and nothing is written";
 
 /// The checkpoint that a render continues from.
 pub struct ResumedImage {
     path: PathBuf,
-    checkpoint: Checkpoint,
+    reader: Reader,
 }
 
 /// Returns the path of an image's checkpoint.
@@ -29,10 +34,9 @@ impl ResumedImage {
     /// Opens the checkpoint of an image, if there is one and it is `wanted`.
     pub fn open(
         wanted: bool,
-        model: &Model,
-        region: &Region,
         picture: &Path,
         output: &Output,
+        label: impl FnOnce() -> Result<Label, Failure>,
     ) -> Result<Option<Self>, Failure> {
         if !matches!(output, Output::File(..)) {
             return if wanted {
@@ -53,59 +57,54 @@ impl ResumedImage {
             return Ok(None);
         }
         let missing = format!("there is no {shown} to continue from: the render starts from the beginning");
-        let begun = Self::find(path, || identity(model, region), region.size())?;
+        let begun = Self::find(path, label)?;
         if begun.is_none() {
             messages::note(&missing);
         }
         Ok(begun)
     }
 
-    /// Opens the checkpoint of this path, if there is one. Refuses that of another image.
+    /// Opens the checkpoint of this path, if there is one. Refuses that of another image than one of this label.
     pub fn find(
         path: PathBuf,
-        identity: impl FnOnce() -> Result<Identity, Failure>,
-        size: [usize; 2],
+        label: impl FnOnce() -> Result<Label, Failure>,
     ) -> Result<Option<Self>, Failure> {
-        let file = match files::open(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            file => file,
-        };
-        let begun = Self::read(path, file)?;
-        begun.refuse_other_image(&identity()?, size)?;
-        Ok(Some(begun))
-    }
-
-    /// Reads the beginning of a checkpoint.
-    pub fn read(path: PathBuf, file: io::Result<File>) -> Result<Self, Failure> {
-        match file.and_then(Checkpoint::open) {
-            Ok(checkpoint) => Ok(Self { path, checkpoint }),
-            Err(error) => Err(cannot_read(&path, &error)),
+        match files::open(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            file => Self::read(path, file, &label()?).map(Some),
         }
     }
 
-    /// Refuses the checkpoint of another image than this one.
-    pub fn refuse_other_image(&self, identity: &Identity, size: [usize; 2]) -> Result<(), Failure> {
-        let differences = identity.differences(&self.checkpoint.identity);
+    /// Reads the beginning of a checkpoint. Refuses that of another image than one of this label.
+    pub fn read(path: PathBuf, file: io::Result<File>, label: &Label) -> Result<Self, Failure> {
+        let reader = file.and_then(Reader::open).map_err(|error| cannot_read(&path, &error))?;
+        let there = &reader.label;
+        let mut differences = label.identity.differences(&there.identity);
+        if differences.is_empty() && there.tiles != label.tiles {
+            differences.push("it is another part".to_owned());
+        }
         if !differences.is_empty() {
             return Err(Failure::Usage(
-                format!("`{}` belongs to another image: {}", text::shown(&self.path), differences.join(", ")),
+                format!("`{}` belongs to another image: {}", text::shown(&path), differences.join(", ")),
                 Some(BEGIN_ANEW.to_owned()),
             ));
         }
-        if !self.checkpoint.fits(size) {
-            return Err(cannot_read(&self.path, &io::ErrorKind::InvalidData.into()));
+        // The format may be another: it says how the image is written.
+        if (there.size, there.what.pixel()) != (label.size, label.what.pixel()) {
+            return Err(cannot_read(&path, &io::ErrorKind::InvalidData.into()));
         }
-        Ok(())
+        Ok(Self { path, reader })
     }
 
     /// Tells whether bands have been filled with the whole checkpoint.
     pub fn is_over(&self) -> bool {
-        self.checkpoint.rows_left() == 0
+        self.reader.is_over()
     }
 
-    /// Fills a band with the pixels that are already rendered. Bands must be passed in order, from the top.
-    pub fn fill(&mut self, band: &Band) -> Result<(), Failure> {
-        self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
+    /// Fills a band, whose first row of tiles has this index, with the pixels that are already rendered. Bands must be
+    /// passed in order, from the top.
+    pub fn fill(&mut self, band: &Band, strip: usize) -> Result<(), Failure> {
+        self.reader.fill(band, strip).map_err(|error| cannot_read(&self.path, &error))
     }
 
     /// Removes the checkpoint after its image is finished, unless another render that continued from it has done so.
@@ -132,61 +131,125 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     Failure::Usage(format!("cannot read `{}`: {reason}", text::shown(path)), Some(BEGIN_ANEW.to_owned()))
 }
 
-/// Writes a checkpoint, which is not moved to its path yet. The other arguments are those of [`checkpoint::write`].
-pub fn write(
-    path: &Path,
-    size: [usize; 2],
-    identity: &Identity,
-    tiles: &Tiles,
-    next: impl FnMut(&mut [u8]) -> io::Result<()>,
-) -> Result<Output, Failure> {
-    let mut checkpoint = Output::open(path)?;
-    let mut out = BufWriter::with_capacity(1 << 16, &mut checkpoint);
-    let written = checkpoint::write(&mut out, size, identity, tiles, next).and_then(|()| out.flush());
-    drop(out);
-    written.map_err(|error| Failure::cannot_write(path, &error))?;
-    Ok(checkpoint)
-}
-
 /// Writes an unfinished image to its path, and a checkpoint beside it, whose path is returned. `written` contains
 /// `rows` rows of the image, black where nothing is rendered.
 ///
 /// Both files are complete before either is moved to its path.
 pub fn leave(
-    model: &Model,
-    region: &Region,
+    label: &Label,
     (picture, format): (&Path, Format),
     written: Output,
-    (tiles, rows): (&Tiles, usize),
+    (done, rows): (&TileSet, usize),
 ) -> Result<PathBuf, Failure> {
-    let [width, height] = region.size();
-    let path = beside(picture);
-    let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
-    let mut shown = written.read().and_then(|file| format.read(file)).map_err(cannot_write)?;
-    let identity = identity(model, region)?;
-    let checkpoint = write(&path, [width, rows], &identity, tiles, |row| shown.next(row))?;
+    let (path, grid) = (beside(picture), Grid { size: [label.size[0], rows] });
+    let cannot_keep = |error: io::Error| Failure::cannot_write(&path, &error);
+    let cannot_write = |error: io::Error| Failure::cannot_write(picture, &error);
+    let strips = || written.read().and_then(|file| format.read(file)).map(|shown| strips(shown, grid));
+    let mut checkpoint = Output::open(&path)?;
+    let kept = strips().and_then(|strips| keep(&mut checkpoint, label, done, strips));
+    kept.map_err(cannot_keep)?;
     let partial = match format {
         Format::Ppm => {
             // The missing end of the file becomes a hole, which reads as black.
-            let len = format.len([width, height]).unwrap_or_default();
-            written.set_len(len).map_err(|error| Failure::cannot_write(picture, &error))?;
+            let len = format.len(label.size).unwrap_or_default();
+            written.set_len(len).map_err(cannot_write)?;
             written
         }
-        // The checkpoint's transparency shows which pixels are missing.
         Format::Png(_) => {
-            let mut shown = checkpoint.read().map_err(cannot_write)?;
             let mut partial = Output::open(picture)?;
-            io::copy(&mut shown, &mut partial).map_err(|error| Failure::cannot_write(picture, &error))?;
+            let shown = strips().and_then(|strips| show(&mut partial, grid, done, strips));
+            shown.map_err(cannot_write)?;
             partial
         }
     };
-    checkpoint.finish().map_err(cannot_write)?;
-    partial.finish().map_err(|error| Failure::cannot_write(picture, &error))?;
+    checkpoint.finish().map_err(cannot_keep)?;
+    partial.finish().map_err(cannot_write)?;
     Ok(path)
 }
 
+/// Reads the rows of tiles of an image, from the top.
+fn strips(mut shown: Rows, grid: Grid) -> impl Iterator<Item = io::Result<Vec<u8>>> {
+    let [width, height] = grid.size;
+    (0..height).step_by(TILE).map(move |row| {
+        let mut bytes = vec![0; 3 * width * TILE.min(height - row)];
+        bytes.chunks_mut(3 * width).try_for_each(|row| shown.next(row))?;
+        Ok(bytes)
+    })
+}
+
+/// Writes the finished tiles of an image to a checkpoint.
+fn keep(
+    out: impl Write,
+    label: &Label,
+    done: &TileSet,
+    strips: impl Iterator<Item = io::Result<Vec<u8>>>,
+) -> io::Result<()> {
+    let (grid, mut tile) = (label.grid(), Vec::new());
+    let mut writer = Writer::new(BufWriter::with_capacity(1 << 16, out), label)?;
+    for (strip, bytes) in strips.enumerate() {
+        let bytes = bytes?;
+        for index in grid.across() * strip..grid.across() * (strip + 1) {
+            let [columns, rows] = grid.tile(index);
+            take_tile(&bytes, 3 * grid.size[0], [columns, 0..rows.len()], 3, &mut tile);
+            writer.tile(done.has(index).then_some(&tile))?;
+        }
+    }
+    writer.finish()?.flush()
+}
+
+/// Writes an unfinished image as a PNG that is transparent where nothing is rendered.
+fn show(
+    out: impl Write,
+    grid: Grid,
+    done: &TileSet,
+    strips: impl Iterator<Item = io::Result<Vec<u8>>>,
+) -> io::Result<()> {
+    let side = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
+    let [width, height] = grid.size;
+    let mut out = BufWriter::with_capacity(1 << 16, out);
+    let mut encoder = png::Encoder::new(&mut out, side(width)?, side(height)?);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_source_srgb(AS_SHOWN);
+    let mut writer = encoder.write_header()?;
+    let mut stream = writer.stream_writer()?;
+    for (strip, bytes) in strips.enumerate() {
+        let bytes = bytes?;
+        for row in bytes.as_chunks().0.chunks(width) {
+            let pixel = |(column, [red, green, blue]): (usize, &[u8; 3])| {
+                let is_done = done.has(strip * grid.across() + column / TILE);
+                if is_done { [*red, *green, *blue, u8::MAX] } else { [0; 4] }
+            };
+            let row: Vec<u8> = row.iter().enumerate().flat_map(pixel).collect();
+            stream.write_all(&row)?;
+        }
+    }
+    stream.finish()?;
+    writer.finish()?;
+    out.flush()
+}
+
+/// Says how much of an image is finished. That is rounded down, so that an unfinished image does not show 100 %.
+pub fn share(pixels: usize, of: usize) -> String {
+    format!("{:.1} %", (1000.0 * pixels as f64 / of as f64).floor() / 10.0)
+}
+
+/// Returns the label of an image of bytes: it is part 1 of 1.
+pub fn label(
+    model: &Model,
+    region: &Region,
+    format: Format,
+    made: &[(&str, String)],
+) -> Result<Label, Failure> {
+    let (identity, what) = (identity(model, region)?, PixelFormat::picture(format));
+    let (part, size, beside) = ([1, 1], region.size(), Vec::new());
+    let made = made.iter().map(|(keyword, text)| ((*keyword).to_owned(), text.clone())).collect();
+    Ok(Label { part, tiles: [0, Grid { size }.count()], size, what, beside, identity, made })
+}
+
 /// Describes what a part of a model's image depends on.
-pub fn identity(model: &Model, region: &Region) -> Result<Identity, Failure> {
+fn identity(model: &Model, region: &Region) -> Result<Identity, Failure> {
     Identity::of(model, &region.columns, &region.rows).map_err(|error| {
         let reason = text::reason(&error);
         Failure::Failed(format!(

@@ -84,6 +84,11 @@ impl Sum {
         self.get().proofs
     }
 
+    /// Adds what is wrong with the pixels of a part, of which nothing else is counted.
+    pub fn add_flaws(&self, part: &Flaws) {
+        self.get().flaws.add(part);
+    }
+
     /// Adds the counts of a part.
     pub fn add(&self, part: &RayStats) {
         self.get().add(part);

@@ -1,7 +1,6 @@
 //! The tiles of an image, and which of them are rendered.
 
 use std::array;
-use std::iter;
 use std::mem::take;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -123,73 +122,4 @@ impl Band {
 /// Locks a strip. A thread that panicked has added a whole tile or none.
 pub(crate) fn locked(strip: &Mutex<Strip>) -> MutexGuard<'_, Strip> {
     strip.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Records which tiles of an image are rendered, band by band.
-pub struct Tiles {
-    width: usize,
-    height: usize,
-    strips: Vec<Done>,
-}
-
-/// The rendered tiles of a row of tiles. An image has few rows that are partly rendered, so this takes little memory
-/// even for large images.
-enum Done {
-    Nothing,
-    Whole,
-    Part(Vec<bool>),
-}
-
-impl Tiles {
-    /// Makes the record of an image of this width and height in pixels, without rendered tiles.
-    pub fn none([width, height]: [usize; 2]) -> Self {
-        Self { width, height, strips: Vec::new() }
-    }
-
-    /// Adds the tiles of the next band.
-    pub fn add(&mut self, band: &Band) {
-        self.strips.extend(band.strips.iter().map(|strip| match &locked(strip).tiles {
-            tiles if tiles.iter().all(|is_done| *is_done) => Done::Whole,
-            tiles if tiles.iter().any(|is_done| *is_done) => Done::Part(tiles.clone()),
-            _ => Done::Nothing,
-        }));
-    }
-
-    /// Tells for each pixel of a row, counted from the top, whether it is rendered.
-    pub fn row(&self, row: usize) -> impl Iterator<Item = bool> + '_ {
-        let strip = self.strips.get(row / TILE).unwrap_or(&Done::Nothing);
-        (0..self.width).map(move |column| match strip {
-            Done::Nothing => false,
-            Done::Whole => true,
-            Done::Part(tiles) => tiles[column / TILE],
-        })
-    }
-
-    /// Returns the number of rendered pixels.
-    pub fn pixels(&self) -> usize {
-        let lengths = |side: usize| (0..side).step_by(TILE).map(move |from| TILE.min(side - from));
-        let strips = iter::zip(&self.strips, lengths(self.height));
-        strips
-            .map(|(strip, tall)| match strip {
-                Done::Nothing => 0,
-                Done::Whole => tall * self.width,
-                Done::Part(tiles) => {
-                    tall * iter::zip(tiles, lengths(self.width))
-                        .map(|(done, wide)| usize::from(*done) * wide)
-                        .sum::<usize>()
-                }
-            })
-            .sum()
-    }
-
-    /// Returns the number of rows of pixels to the end of the last row of tiles with a rendered tile.
-    pub fn rows_begun(&self) -> usize {
-        let strips = self.strips.iter().rposition(|strip| !matches!(strip, Done::Nothing));
-        strips.map_or(0, |last| self.height.min((last + 1) * TILE))
-    }
-
-    /// Tells whether the whole image is rendered.
-    pub fn is_whole(&self) -> bool {
-        self.pixels() == self.width * self.height
-    }
 }

@@ -83,7 +83,7 @@ fn a_time_limit_within_a_tile_keeps_those_that_are_done() {
         }
         limit *= 2;
     }
-    let left = rgba(&folder, "a.png.checkpoint");
+    let left = rgba(&folder, "a.png");
     assert!(left.pixels().any(|pixel| pixel.0[3] == 255) && left.get_pixel(31, 24).0[3] == 0);
 }
 
@@ -211,16 +211,15 @@ fn a_large_picture_ends_where_it_was_stopped_and_is_resumed() {
             }
             limit *= 2;
         };
-        let checkpoint = rgba(&folder, &format!("{name}.checkpoint"));
-        let (width, height) = checkpoint.dimensions();
-        assert!(width == 6000 && height < 8000 && height.is_multiple_of(16), "{height} rows: {err}");
         if name == "a.png" {
-            assert!(rgba(&folder, name) == checkpoint);
+            let partial = rgba(&folder, name);
+            let (width, height) = partial.dimensions();
+            assert!(width == 6000 && height < 8000 && height.is_multiple_of(16), "{height} rows: {err}");
+            assert!(partial.pixels().any(|pixel| pixel.0[3] == 255));
         } else {
             // The rest of the image is a hole in the file.
             assert_eq!(bytes(&folder, name).len(), "P6 6000 8000 255\n".len() + 3 * 6000 * 8000);
         }
-        assert!(checkpoint.pixels().any(|pixel| pixel.0[3] == 255));
         let (status, _, err) = render(&folder, &[&args[..], &["--resume"]].concat());
         assert_eq!(status, 0, "{err}");
         let whole = format!("whole-{name}");

@@ -16,6 +16,7 @@ use crate::common::program::{folder, outcome, scene, tabray};
 use image::{RgbImage, RgbaImage};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
+use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -122,6 +123,13 @@ fn bytes(folder: &TempDir, name: &str) -> Vec<u8> {
 
 fn rgba(folder: &TempDir, name: &str) -> RgbaImage {
     image::load_from_memory(&bytes(folder, name)).expect("a picture").into_rgba8()
+}
+
+/// Asserts that a file is a whole checkpoint: it ends with the SHA-256 of all before.
+fn is_checkpoint(folder: &TempDir, name: &str) {
+    let bytes = bytes(folder, name);
+    let (text, checksum) = bytes.split_last_chunk::<32>().expect("a checksum");
+    assert!(text.starts_with(b"tabray pixels") && *Sha256::digest(text) == *checksum, "{name}");
 }
 
 fn rgb(folder: &TempDir, name: &str) -> RgbImage {

@@ -1,7 +1,4 @@
-//! Checkpoints: the finished parts of an image or of a part of one, in a file from which a later render continues.
-//!
-//! A checkpoint is a PNG whose pixels are opaque where they are rendered and transparent elsewhere. A text chunk says
-//! what the image depends on.
+//! What the pixels of an image depend on, for a file of some of them: only the same image is continued or assembled.
 
 use rayon::ThreadPoolBuilder;
 use serde::{Deserialize, Serialize};
@@ -9,13 +6,10 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::env;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
-use std::iter;
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
-use tabray_core::output::picture::AS_SHOWN;
 use tabray_core::parallel;
-use tabray_core::render::tiles::{Band, Strip, TILE, Tiles};
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::entity::Args;
 use tabray_core::scene::model::Model;
@@ -25,11 +19,7 @@ use tabray_core::world::sensor::Adaptive;
 use tabray_lang::dump;
 use tabray_lang::syntax::Syntax;
 
-/// The keyword of the text chunk.
-const KEYWORD: &str = "tabray checkpoint";
-
-/// Everything that the pixels of an image depend on; the text chunk is its JSON. A field that another version did not
-/// write is empty.
+/// Everything that the pixels of an image depend on. A field that another version did not write is empty.
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Identity {
@@ -58,9 +48,6 @@ pub struct Identity {
     size: [usize; 2],
     /// The hashes of the textures' images, by the names of the textures.
     textures: BTreeMap<String, String>,
-    /// The range of tiles of a part's checkpoint: the first one, and the first after them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tiles: Option<[usize; 2]>,
     /// The version of tabray.
     version: String,
 }
@@ -97,17 +84,11 @@ impl Identity {
             scene: scene(model),
             size: camera.pixels,
             textures: textures.collect(),
-            tiles: None,
             version: env!("CARGO_PKG_VERSION").to_owned(),
         })
     }
 
-    /// Describes the checkpoint of a part that has these tiles of the image.
-    pub fn of_tiles(self, Range { start, end }: &Range<usize>) -> Self {
-        Self { tiles: Some([*start, *end]), ..self }
-    }
-
-    /// Tells whether this build of the program has made the checkpoint.
+    /// Tells whether this build of the program has made the file.
     ///
     /// # Errors
     /// If the program cannot read its own file.
@@ -151,9 +132,6 @@ impl Identity {
         ];
         let others = values.into_iter().filter(|(_, was, is)| was != is);
         differences.extend(others.map(|(what, was, is)| format!("the {what} was {was} and is {is}")));
-        if self.tiles != old.tiles {
-            differences.push("it is another part".to_owned());
-        }
         differences
     }
 }
@@ -236,182 +214,14 @@ fn shown(hasher: Sha256) -> String {
     text::sha256(&hasher.finalize())
 }
 
-/// Writes a checkpoint of the top of an image, with this number of columns and rows. `next` fills in the bytes of one
-/// row after the other, whether they are rendered or not.
-///
-/// # Errors
-/// Returns the errors of `out` and `next`, and an error where a PNG cannot have the size.
-pub fn write(
-    mut out: impl Write,
-    [width, height]: [usize; 2],
-    identity: &Identity,
-    tiles: &Tiles,
-    mut next: impl FnMut(&mut [u8]) -> io::Result<()>,
-) -> io::Result<()> {
-    let side = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
-    let mut encoder = png::Encoder::new(&mut out as &mut dyn Write, side(width)?, side(height)?);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
-    encoder.set_source_srgb(AS_SHOWN);
-    encoder.add_itxt_chunk(KEYWORD.to_owned(), text::json(identity))?;
-    let mut writer = encoder.write_header()?;
-    let mut stream = writer.stream_writer()?;
-    let (mut colours, mut pixels) = (vec![[0; 3]; width], vec![[0; 4]; width]);
-    for row in 0..height {
-        next(colours.as_flattened_mut())?;
-        for ((pixel, [red, green, blue]), is_done) in iter::zip(&mut pixels, &colours).zip(tiles.row(row)) {
-            *pixel = if is_done { [*red, *green, *blue, u8::MAX] } else { [0; 4] };
-        }
-        stream.write_all(pixels.as_flattened())?;
-    }
-    stream.finish()?;
-    Ok(writer.finish()?)
-}
-
-/// A checkpoint to continue from, which is read band by band.
-pub struct Checkpoint {
-    /// The settings and inputs on which the checkpoint's image depends.
-    pub identity: Identity,
-    png: png::Reader<BufReader<File>>,
-    /// The number of columns, which is checked only by [`fits`](Self::fits).
-    width: usize,
-    /// The number of rows that are still to be read.
-    rows: usize,
-}
-
-impl Checkpoint {
-    /// Opens a checkpoint.
-    ///
-    /// # Errors
-    /// Returns the errors of the file, and one of kind `InvalidData` if the file is not a checkpoint.
-    pub fn open(file: File) -> io::Result<Self> {
-        let mut png = png::Decoder::new(BufReader::with_capacity(1 << 16, file));
-        png.ignore_checksums(false);
-        let png = png.read_info().map_err(invalid)?;
-        let info = png.info();
-        // A compressed text might be a thousand times longer than the file.
-        let text = info.utf8_text.iter().find(|text| text.keyword == KEYWORD && !text.compressed);
-        let identity = text.and_then(|text| serde_json::from_str::<Identity>(&text.get_text().ok()?).ok());
-        let is_plain =
-            png.output_color_type() == (png::ColorType::Rgba, png::BitDepth::Eight) && !info.interlaced;
-        let identity = identity.filter(|_| is_plain).ok_or(io::ErrorKind::InvalidData)?;
-        let (width, rows) = (info.width as usize, info.height as usize);
-        Ok(Self { identity, png, width, rows })
-    }
-
-    /// Tells whether this can be the checkpoint of an image of this size: of the same width, and of the same height or
-    /// cut off between two rows of tiles.
-    pub fn fits(&self, [width, height]: [usize; 2]) -> bool {
-        self.width == width && (self.rows == height || self.rows < height && self.rows.is_multiple_of(TILE))
-    }
-
-    /// Fills a band with the pixels that are already rendered, and leaves the rest. Bands must be passed in order, from
-    /// the top.
-    ///
-    /// # Errors
-    /// Returns the errors of the file, and one of kind `InvalidData` if the file is corrupt. Some corruption is noticed
-    /// only at the end of the file, after earlier bands were filled.
-    pub fn fill(&mut self, band: &Band) -> io::Result<()> {
-        let mut row = vec![[0; 4]; self.width];
-        for index in 0..band.strips.len() {
-            let Strip { pixels, tiles } = &mut *band.strip(index);
-            if self.rows == 0 {
-                return Ok(());
-            }
-            tiles.fill(true);
-            for pixels in pixels.chunks_mut(self.width) {
-                let read = self.png.read_row(row.as_flattened_mut()).map_err(invalid)?;
-                read.ok_or(io::ErrorKind::InvalidData)?;
-                self.rows -= 1;
-                for (column, (pixel, [red, green, blue, alpha])) in iter::zip(pixels, &row).enumerate() {
-                    *pixel = [*red, *green, *blue];
-                    if *alpha != u8::MAX {
-                        tiles[column / TILE] = false;
-                    }
-                }
-            }
-            if self.rows == 0 {
-                // The checksums come after the pixels.
-                self.png.finish().map_err(invalid)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Returns the number of rows that are still to be read.
-    pub fn rows_left(&self) -> usize {
-        self.rows
-    }
-}
-
-/// Makes an error of kind `InvalidData`, also for a file that ends too soon.
-fn invalid(error: png::DecodingError) -> io::Error {
-    match error {
-        png::DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => error,
-        _ => io::ErrorKind::InvalidData.into(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Seek;
-
-    const SIZE: [usize; 2] = [20, 18];
-
-    /// Makes a file with these bytes.
-    fn file(bytes: &[u8]) -> File {
-        let mut file = tempfile::tempfile().expect("a temporary file");
-        file.write_all(bytes).and_then(|()| file.rewind()).expect("it is written");
-        file
-    }
-
-    fn blank() -> Band {
-        Band::blank(0..SIZE[0], 0..SIZE[1])
-    }
-
-    /// Returns all bytes and tiles of an image, as a checkpoint fills them.
-    fn filled(bytes: &[u8]) -> io::Result<(Vec<u8>, Vec<bool>)> {
-        let mut checkpoint = Checkpoint::open(file(bytes))?;
-        if !checkpoint.fits(SIZE) {
-            return Err(io::ErrorKind::InvalidData.into());
-        }
-        let band = blank();
-        checkpoint.fill(&band)?;
-        let tiles = (0..band.strips.len()).flat_map(|index| band.strip(index).tiles.clone()).collect();
-        Ok((band.bytes(usize::MAX).concat(), tiles))
-    }
 
     #[test]
     fn a_difference_of_one_stop_is_told_in_the_singular() {
         let of = |exposure| Identity { exposure, ..Identity::default() };
         let told = of(Some(1.0)).differences(&of(None));
         assert_eq!(told, ["the exposure was 0 stops and is 1 stop"]);
-    }
-
-    #[test]
-    fn a_damaged_byte_anywhere_is_noticed_or_harmless() {
-        let pixels: Vec<u8> = (0..3 * SIZE[0] * SIZE[1]).map(|byte| (byte * byte / 97) as u8).collect();
-        let band = blank();
-        (0..2).for_each(|index| band.strip(index).tiles.fill(true));
-        let mut tiles = Tiles::none(SIZE);
-        tiles.add(&band);
-        let (mut bytes, mut left) = (Vec::new(), &pixels[..]);
-        let next = |row: &mut [u8]| left.read_exact(row);
-        write(&mut bytes, SIZE, &Identity::default(), &tiles, next).expect("memory takes it");
-        let whole = (pixels, vec![true; 4]);
-        assert!(filled(&bytes).expect("nothing is damaged") == whole);
-        for at in 0..bytes.len() {
-            for mask in [1, 0x80, 0xff] {
-                let mut damaged = bytes.clone();
-                damaged[at] ^= mask;
-                assert!(
-                    filled(&damaged).is_ok_and(|filled| filled == whole) || filled(&damaged).is_err(),
-                    "{at}"
-                );
-            }
-            assert!(filled(&bytes[..at]).is_err(), "cut off at {at}");
-        }
     }
 }

@@ -1,0 +1,521 @@
+//! Finished tiles of an image or of a part of one, in a file: a part, from which the image is assembled, or a
+//! checkpoint, which lacks some tiles and from which a later render continues.
+//!
+//! A file consists of a line that names the format, a line of JSON (the [`Label`]), the pixels of the tiles that are
+//! finished, a bit for each tile that tells whether it is (a [`TileSet`]), and the SHA-256 of all that. The pixels come
+//! tile by tile, and in a tile in rows from the top.
+
+use crate::identity::Identity;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::mem::take;
+use std::ops::Range;
+use tabray_core::output::aov::{Aov, Setting};
+use tabray_core::output::deflate::Compression;
+use tabray_core::output::full_range::FullRange;
+use tabray_core::output::picture::Format;
+use tabray_core::render::division::Grid;
+use tabray_core::render::tiles::{Band, Strip, TILE};
+use tabray_core::text;
+
+/// The maximum number of parts of an image.
+pub const MOST_PARTS: usize = 100_000;
+
+/// The first line of each file.
+const FIRST: &[u8] = b"tabray pixels 1\n";
+
+/// What older versions wrote: how their parts begin, and a text near the beginning of their checkpoints, which are PNGs.
+const OLDER_PART: &[u8] = b"tabray part ";
+const OLDER_CHECKPOINT: &[u8] = b"tabray checkpoint";
+
+/// The number of bytes in which the text of an older checkpoint begins.
+const BEGINNING: usize = 256;
+
+/// The maximum length of the second line in bytes. It names each texture and each mesh of the scene.
+const LONGEST: u64 = 1 << 26;
+
+/// The length of the checksum at the end of a file in bytes.
+const CHECKSUM: usize = 32;
+
+/// The format of the pixels of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PixelFormat {
+    /// Pixels of a PPM: three bytes each.
+    Ppm,
+    /// Pixels of a PNG with this compression: three bytes each.
+    Png(#[serde(with = "by_name")] Compression),
+    /// Pixels of an EXR: three numbers of 32 bits each.
+    Exr,
+    /// Pixels of a PFM: three numbers of 32 bits each.
+    Pfm,
+    /// Pixels of an auxiliary image, which is a PNG with this compression, or else a PPM: three numbers of 64 bits
+    /// each.
+    Beside(Aov, #[serde(with = "by_name")] Option<Compression>, Setting),
+}
+
+/// Compression by its name on the command line.
+mod by_name {
+    use super::{Compression, text};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+
+    /// A compression, or none.
+    pub trait Named: Sized {
+        fn name(&self) -> Option<String>;
+        fn of(name: Option<String>) -> Option<Self>;
+    }
+
+    impl Named for Compression {
+        fn name(&self) -> Option<String> {
+            Some(text::Named::name(*self).to_owned())
+        }
+
+        fn of(name: Option<String>) -> Option<Self> {
+            <Self as text::Named>::of_name(&name?)
+        }
+    }
+
+    impl Named for Option<Compression> {
+        fn name(&self) -> Option<String> {
+            self.map(|of| text::Named::name(of).to_owned())
+        }
+
+        fn of(name: Option<String>) -> Option<Self> {
+            match name {
+                Some(name) => <Compression as text::Named>::of_name(&name).map(Some),
+                None => Some(None),
+            }
+        }
+    }
+
+    pub fn serialize<N: Named, S: Serializer>(of: &N, serializer: S) -> Result<S::Ok, S::Error> {
+        of.name().serialize(serializer)
+    }
+
+    pub fn deserialize<'de, N: Named, D: Deserializer<'de>>(deserializer: D) -> Result<N, D::Error> {
+        N::of(Option::deserialize(deserializer)?).ok_or_else(|| de::Error::custom("no compression"))
+    }
+}
+
+impl PixelFormat {
+    /// Returns the format of the parts of an image of this format.
+    pub fn picture(format: Format) -> Self {
+        match format {
+            Format::Ppm => Self::Ppm,
+            Format::Png(compression) => Self::Png(compression),
+        }
+    }
+
+    /// Returns the format of the parts of an image of full range.
+    pub fn full_range(format: FullRange) -> Self {
+        match format {
+            FullRange::Exr => Self::Exr,
+            FullRange::Pfm => Self::Pfm,
+        }
+    }
+
+    /// Returns the length of a pixel in bytes.
+    pub fn pixel(self) -> usize {
+        match self {
+            Self::Ppm | Self::Png(_) => 3,
+            Self::Exr | Self::Pfm => 12,
+            Self::Beside(..) => 24,
+        }
+    }
+}
+
+/// The label of a part: the image that it belongs to, and which of its parts it is. A whole image is part 1 of 1.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Label {
+    /// The number of the part, from 1, and the number of parts.
+    pub part: [usize; 2],
+    /// The first of its tiles, and the first of the next part.
+    pub tiles: [usize; 2],
+    /// The width and height of the image in pixels.
+    pub size: [usize; 2],
+    /// The format of the pixels.
+    pub what: PixelFormat,
+    /// The auxiliary images, which have parts of their own.
+    pub beside: Vec<Aov>,
+    /// The settings and inputs on which the pixels depend.
+    pub identity: Identity,
+    /// The texts that a PNG records about how the image was made, each with its keyword.
+    pub made: Vec<(String, String)>,
+}
+
+impl Label {
+    /// Returns the tiles of the image.
+    pub fn grid(&self) -> Grid {
+        Grid { size: self.size }
+    }
+
+    /// Returns the tiles of the part.
+    pub fn tiles(&self) -> Range<usize> {
+        self.tiles[0]..self.tiles[1]
+    }
+
+    /// Tells whether the label can be that of a part.
+    fn is_sound(&self) -> bool {
+        let [number, of] = self.part;
+        let pixels = self.size[0].checked_mul(self.size[1]);
+        let is_small = self.size.iter().all(|side| *side <= 100_000) && pixels.is_some_and(|all| all > 0);
+        let is_keyword = |word: &str| {
+            (1..80).contains(&word.len()) && word.bytes().all(|byte| byte.is_ascii_graphic() || byte == b' ')
+        };
+        let are_texts = self.made.iter().all(|(keyword, text)| is_keyword(keyword) && !text.contains('\0'));
+        is_small
+            && are_texts
+            && of <= MOST_PARTS
+            && (1..=of).contains(&number)
+            && self.tiles[0] < self.tiles[1]
+            && self.tiles[1] <= self.grid().count()
+    }
+}
+
+/// Which tiles of a part are finished.
+pub struct TileSet {
+    tiles: Range<usize>,
+    /// A bit for each tile of the part, beginning with the lowest of each byte.
+    bits: Vec<u8>,
+}
+
+impl TileSet {
+    /// Makes an empty set of these tiles of an image.
+    pub fn none(tiles: Range<usize>) -> Self {
+        let bits = vec![0; tiles.len().div_ceil(8)];
+        Self { tiles, bits }
+    }
+
+    /// Adds a tile, which must be one of the part.
+    pub fn add(&mut self, tile: usize) {
+        let at = tile - self.tiles.start;
+        self.bits[at / 8] |= 1 << (at % 8);
+    }
+
+    /// Tells whether a tile of the image is in the set.
+    pub fn has(&self, tile: usize) -> bool {
+        let at = tile.wrapping_sub(self.tiles.start);
+        at < self.tiles.len() && self.bits[at / 8] >> (at % 8) & 1 == 1
+    }
+
+    /// Lists the tiles in the set.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
+        self.tiles.clone().filter(|tile| self.has(*tile))
+    }
+
+    /// Tells whether all tiles are in the set.
+    pub fn is_whole(&self) -> bool {
+        self.iter().eq(self.tiles.clone())
+    }
+
+    /// Returns the number of pixels of the tiles in the set.
+    pub fn pixels(&self, grid: Grid) -> usize {
+        self.iter().map(|tile| grid.pixels(tile)).sum()
+    }
+}
+
+/// Writes a part, tile by tile.
+pub struct Writer<W> {
+    out: W,
+    hasher: Sha256,
+    /// The tiles that are written.
+    pub done: TileSet,
+    next: usize,
+}
+
+impl<W: Write> Writer<W> {
+    /// Writes the label.
+    ///
+    /// # Errors
+    /// Returns the errors of `out`.
+    pub fn new(out: W, label: &Label) -> io::Result<Self> {
+        let (done, next) = (TileSet::none(label.tiles()), label.tiles[0]);
+        let mut writer = Self { out, hasher: Sha256::new(), done, next };
+        writer.put(FIRST)?;
+        writer.put((text::json(label) + "\n").as_bytes())?;
+        Ok(writer)
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.hasher.update(bytes);
+        self.out.write_all(bytes)
+    }
+
+    /// Writes the bytes of the next tile, or leaves it out.
+    ///
+    /// # Errors
+    /// Returns the errors of `out`.
+    pub fn tile(&mut self, pixels: Option<&[u8]>) -> io::Result<()> {
+        if let Some(pixels) = pixels {
+            self.done.add(self.next);
+            self.put(pixels)?;
+        }
+        self.next += 1;
+        Ok(())
+    }
+
+    /// Writes which tiles are finished, and the checksum.
+    ///
+    /// # Errors
+    /// Returns the errors of `out`.
+    pub fn finish(mut self) -> io::Result<W> {
+        let bits = take(&mut self.done.bits);
+        self.put(&bits)?;
+        self.out.write_all(&self.hasher.finalize())?;
+        Ok(self.out)
+    }
+}
+
+/// Reads a part.
+pub struct Reader {
+    /// The label of the part.
+    pub label: Label,
+    /// The tiles that the file has.
+    pub done: TileSet,
+    file: BufReader<File>,
+    hasher: Sha256,
+    /// The number of bytes of pixels that are still to be read.
+    left: u64,
+}
+
+impl Reader {
+    /// Reads the label of a part.
+    ///
+    /// # Errors
+    /// Returns the errors of the file, one of kind `Unsupported` if an older version of tabray wrote it, and one of kind
+    /// `InvalidData` if it is not a part or is cut off, both with the reason.
+    pub fn open(file: File) -> io::Result<Self> {
+        let wrong = |reason: &'static str| io::Error::new(io::ErrorKind::InvalidData, reason);
+        let len = file.metadata()?.len();
+        let (mut file, mut hasher) = (BufReader::with_capacity(1 << 16, file), Sha256::new());
+        let beginning = file.fill_buf()?;
+        if !beginning.starts_with(FIRST) {
+            let mut words = beginning[..beginning.len().min(BEGINNING)].windows(OLDER_CHECKPOINT.len());
+            return Err(
+                match beginning.starts_with(OLDER_PART) || words.any(|word| word == OLDER_CHECKPOINT) {
+                    true => io::Error::new(io::ErrorKind::Unsupported, "it is of an older version of tabray"),
+                    false => wrong("it is not a part of an image"),
+                },
+            );
+        }
+        file.consume(FIRST.len());
+        let mut line = Vec::new();
+        file.by_ref().take(LONGEST).read_until(b'\n', &mut line)?;
+        let label = serde_json::from_slice::<Label>(&line).ok().filter(Label::is_sound);
+        let label = label.ok_or_else(|| wrong("it is damaged: its header makes no sense"))?;
+        hasher.update(FIRST);
+        hasher.update(&line);
+        let mut done = TileSet::none(label.tiles());
+        let (begin, end) = ((FIRST.len() + line.len()) as u64, (done.bits.len() + CHECKSUM) as u64);
+        if len > begin + end {
+            file.seek(SeekFrom::Start(len - end))?;
+            file.read_exact(&mut done.bits)?;
+            file.seek(SeekFrom::Start(begin))?;
+        }
+        let left = (label.what.pixel() * done.pixels(label.grid())) as u64;
+        if left == 0 || len != begin + left + end {
+            return Err(wrong("it is damaged: it is longer or shorter than its header says"));
+        }
+        Ok(Self { label, done, file, hasher, left })
+    }
+
+    /// Reads the next bytes. Damage is noticed at the end of the file, after the bytes before it were passed on.
+    ///
+    /// # Errors
+    /// Returns the errors of the file, and one of kind `InvalidData`, with the reason, if the checksum is wrong.
+    pub fn read(&mut self, bytes: &mut [u8]) -> io::Result<()> {
+        self.file.read_exact(bytes)?;
+        self.hasher.update(&*bytes);
+        self.left -= bytes.len() as u64;
+        if self.left > 0 {
+            return Ok(());
+        }
+        self.hasher.update(&self.done.bits);
+        if *take(&mut self.hasher).finalize() == self.checksum()? {
+            Ok(())
+        } else {
+            let reason = "it is damaged: its checksum is wrong";
+            Err(io::Error::new(io::ErrorKind::InvalidData, reason))
+        }
+    }
+
+    /// Tells whether all pixels have been read.
+    pub fn is_over(&self) -> bool {
+        self.left == 0
+    }
+
+    /// Fills a band of an image of bytes with the tiles that the file has, and leaves the others. `strip` is the index of
+    /// its first row of tiles. Bands must be passed in order, from the top.
+    ///
+    /// # Errors
+    /// Returns the errors of [`read`](Self::read).
+    pub fn fill(&mut self, band: &Band, strip: usize) -> io::Result<()> {
+        let (grid, mut bytes) = (self.label.grid(), Vec::new());
+        let across = grid.across();
+        for index in 0..band.strips.len() {
+            let Strip { pixels, tiles } = &mut *band.strip(index);
+            for (column, is_done) in tiles.iter_mut().enumerate() {
+                let tile = (strip + index) * across + column;
+                if self.done.has(tile) {
+                    bytes.resize(3 * grid.pixels(tile), 0);
+                    self.read(&mut bytes)?;
+                    let [columns, rows] = grid.tile(tile);
+                    put_tile(
+                        pixels.as_flattened_mut(),
+                        3 * grid.size[0],
+                        [columns, 0..rows.len()],
+                        3,
+                        &bytes,
+                    );
+                    *is_done = true;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the rest, to check that it is whole.
+    ///
+    /// # Errors
+    /// Returns the errors of [`read`](Self::read).
+    pub fn check(&mut self) -> io::Result<()> {
+        let mut block = vec![0; 1 << 16];
+        while self.left > 0 {
+            let count = self.left.min(block.len() as u64) as usize;
+            self.read(&mut block[..count])?;
+        }
+        Ok(())
+    }
+
+    /// Returns the checksum that the file has at its end. No pixels can be read after it.
+    ///
+    /// # Errors
+    /// Returns the errors of the file.
+    pub fn checksum(&mut self) -> io::Result<[u8; CHECKSUM]> {
+        let mut checksum = [0; CHECKSUM];
+        self.file.seek(SeekFrom::End(-(CHECKSUM as i64)))?;
+        self.file.read_exact(&mut checksum)?;
+        Ok(checksum)
+    }
+}
+
+/// Copies the pixels of a tile from an image, or from some rows of it, to the bytes of a part. `row` is the length of
+/// the image's rows in bytes, and the columns and rows count from its upper left.
+pub fn take_tile(
+    image: &[u8],
+    row: usize,
+    [columns, rows]: [Range<usize>; 2],
+    pixel: usize,
+    tile: &mut Vec<u8>,
+) {
+    tile.clear();
+    for at in rows {
+        tile.extend_from_slice(&image[row * at..][pixel * columns.start..pixel * columns.end]);
+    }
+}
+
+/// Copies the bytes of a tile to the place from which [`take_tile`] takes them.
+fn put_tile(image: &mut [u8], row: usize, [columns, rows]: [Range<usize>; 2], pixel: usize, tile: &[u8]) {
+    for (at, bytes) in rows.zip(tile.chunks(pixel * columns.len())) {
+        image[row * at..][pixel * columns.start..pixel * columns.end].copy_from_slice(bytes);
+    }
+}
+
+/// Assembles tiles: returns the bytes of each row of tiles that has some of them, from the top, 0 in place of the
+/// others. `read` reads the bytes of the next tile, given its index.
+pub fn strips<E>(
+    grid: Grid,
+    tiles: Range<usize>,
+    pixel: usize,
+    mut read: impl FnMut(usize, &mut [u8]) -> Result<(), E>,
+) -> impl Iterator<Item = Result<Vec<u8>, E>> {
+    let ([width, height], across, mut tile) = (grid.size, grid.across(), Vec::new());
+    (tiles.start / across..tiles.end.div_ceil(across)).map(move |strip| {
+        let mut rows = vec![0; pixel * width * TILE.min(height - TILE * strip)];
+        for index in tiles.start.max(strip * across)..tiles.end.min((strip + 1) * across) {
+            tile.resize(pixel * grid.pixels(index), 0);
+            read(index, &mut tile)?;
+            let [columns, at] = grid.tile(index);
+            put_tile(&mut rows, pixel * width, [columns, 0..at.len()], pixel, &tile);
+        }
+        Ok(rows)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: [usize; 2] = [20, 18];
+
+    /// Makes a file with these bytes.
+    fn file(bytes: &[u8]) -> File {
+        let mut file = tempfile::tempfile().expect("a temporary file");
+        file.write_all(bytes).and_then(|()| file.rewind()).expect("it is written");
+        file
+    }
+
+    /// Returns all bytes of an image, as a file with these bytes fills them, and which tiles are done.
+    fn filled(bytes: &[u8]) -> io::Result<(Vec<u8>, Vec<bool>)> {
+        let mut reader = Reader::open(file(bytes))?;
+        let band = Band::blank(0..SIZE[0], 0..SIZE[1]);
+        reader.fill(&band, 0)?;
+        let tiles = (0..band.strips.len()).flat_map(|index| band.strip(index).tiles.clone()).collect();
+        Ok((band.bytes(usize::MAX).concat(), tiles))
+    }
+
+    /// Makes a file of an image with the tiles that are `done`.
+    fn written(pixels: &[u8], done: [bool; 4]) -> Vec<u8> {
+        let (identity, what) = (Identity::default(), PixelFormat::Ppm);
+        let (beside, made) = (Vec::new(), Vec::new());
+        let label = Label { part: [1, 1], tiles: [0, 4], size: SIZE, what, beside, identity, made };
+        let (mut writer, mut bytes) = (Writer::new(Vec::new(), &label).expect("memory takes it"), Vec::new());
+        for (tile, is_done) in done.into_iter().enumerate() {
+            take_tile(pixels, 3 * SIZE[0], label.grid().tile(tile), 3, &mut bytes);
+            writer.tile(is_done.then_some(&bytes)).expect("memory takes it");
+        }
+        writer.finish().expect("memory takes it")
+    }
+
+    #[test]
+    fn a_damaged_byte_anywhere_is_noticed() {
+        let pixels: Vec<u8> = (0..3 * SIZE[0] * SIZE[1]).map(|byte| (byte * byte / 97) as u8).collect();
+        for done in [[true; 4], [true, false, false, true]] {
+            let bytes = written(&pixels, done);
+            let (read, tiles) = filled(&bytes).expect("nothing is damaged");
+            for (at, byte) in read.iter().enumerate() {
+                let is_done = done[at / 3 / SIZE[0] / TILE * 2 + at / 3 % SIZE[0] / TILE];
+                assert_eq!(*byte, if is_done { pixels[at] } else { 0 }, "{at}");
+            }
+            assert_eq!(tiles, done);
+            for at in 0..bytes.len() {
+                for mask in [1, 0x80, 0xff] {
+                    let mut damaged = bytes.clone();
+                    damaged[at] ^= mask;
+                    assert!(filled(&damaged).is_err(), "{at}");
+                }
+                assert!(filled(&bytes[..at]).is_err(), "cut off at {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_of_an_older_version_is_told_to_be_one() {
+        let mut png = Vec::new();
+        let mut encoder = png::Encoder::new(&mut png, 1, 1);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+        encoder.add_itxt_chunk("tabray checkpoint".to_owned(), "{}".to_owned()).expect("a text");
+        encoder.write_header().and_then(|mut png| png.write_image_data(&[7])).expect("memory takes it");
+        for older in [&b"tabray part 1\n{}\n"[..], &png] {
+            let error = Reader::open(file(older)).err().expect("an error");
+            assert_eq!(
+                (error.kind(), error.to_string()),
+                (io::ErrorKind::Unsupported, "it is of an older version of tabray".to_owned())
+            );
+        }
+        let error = Reader::open(file(b"P6 1 1 255\n123")).err().expect("an error");
+        assert_eq!(error.kind(), io::ErrorKind::InvalidData);
+    }
+}
