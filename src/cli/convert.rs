@@ -58,10 +58,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return print_scene(&scene);
     }
     if let Some(what) = output::source(&args.output, &args.scene.path, &model) {
-        return Err(Failure::Usage(
-            format!("`{}` is {what}, which the copy would replace", text::shown(&args.output)),
-            Some("name another file: a copy has no comments and no formulas".to_owned()),
-        ));
+        return Err(Failure::usage(format!(
+            "`{}` is {what}, which the copy would replace",
+            text::shown(&args.output)
+        ))
+        .help("name another file: a copy has no comments and no formulas"));
     }
     if is_copy {
         is_the_same_scene(registry, &model, &scene, &args.output)?;
@@ -89,14 +90,15 @@ fn imported(source: &Source) -> Result<Option<String>, Failure> {
 /// Returns the syntax that is asked for.
 fn syntax(args: &Args) -> Result<Syntax, Failure> {
     match (args.to, Syntax::of_name(&args.output)) {
-        (Some(Syntax::Notes), Some(Syntax::Toml)) => Err(Failure::Usage(
-            format!("the file `{}` would be read as TOML", text::shown(&args.output)),
-            Some("end its name in .ray".to_owned()),
-        )),
-        (None, None) => Err(Failure::Usage(
-            format!("the name `{}` does not determine the syntax to write", text::shown(&args.output)),
-            Some("give `--to toml` or `--to ray`, or end it in .toml or .ray".to_owned()),
-        )),
+        (Some(Syntax::Notes), Some(Syntax::Toml)) => {
+            Err(Failure::usage(format!("the file `{}` would be read as TOML", text::shown(&args.output)))
+                .help("end its name in .ray"))
+        }
+        (None, None) => Err(Failure::usage(format!(
+            "the name `{}` does not determine the syntax to write",
+            text::shown(&args.output)
+        ))
+        .help("give `--to toml` or `--to ray`, or end it in .toml or .ray")),
         (asked, by_name) => Ok(asked.or(by_name).unwrap_or_default()),
     }
 }
@@ -110,9 +112,9 @@ fn is_the_same_scene(registry: &Registry, model: &Model, text: &str, path: &Path
         Ok(_) => {
             Err(Failure::Failed(format!("the copy in `{}` would not be the same scene", text::shown(path))))
         }
-        Err(_) => Err(Failure::Usage(
-            format!("the scene would not find its files from `{}`", text::shown(path)),
-            Some("file names are relative to the scene's folder: write the copy there".to_owned()),
-        )),
+        Err(_) => {
+            Err(Failure::usage(format!("the scene would not find its files from `{}`", text::shown(path)))
+                .help("file names are relative to the scene's folder: write the copy there"))
+        }
     }
 }

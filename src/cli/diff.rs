@@ -80,10 +80,8 @@ fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
     let other_size = || {
         let size =
             |name: &str, (width, height): (u32, u32)| format!("`{name}` has {width} x {height} pixels");
-        Failure::Usage(
-            format!("{}, and {}", size(&names[0], sizes[0]), size(&names[1], sizes[1])),
-            Some("only images of the same size can be compared".to_owned()),
-        )
+        Failure::usage(format!("{}, and {}", size(&names[0], sizes[0]), size(&names[1], sizes[1])))
+            .help("only images of the same size can be compared")
     };
     let (old, new) = match (old, new) {
         (Picture::Bytes(old), Picture::Bytes(new)) => (old, new),
@@ -94,10 +92,8 @@ fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
             return Ok(comparison.differing == 0);
         }
         _ => {
-            return Err(Failure::Usage(
-                "a page shows images of 8 bits per channel only".to_owned(),
-                Some("compare PNGs or PPMs, or leave out `--output`".to_owned()),
-            ));
+            return Err(Failure::usage("a page shows images of 8 bits per channel only")
+                .help("compare PNGs or PPMs, or leave out `--output`"));
         }
     };
     let comparison = Comparison::new(&old, &new, args.tolerance).ok_or_else(other_size)?;

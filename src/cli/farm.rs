@@ -127,10 +127,11 @@ impl Order {
         let Self { scene, output, parts, options } = self;
         let [scene_word, image] = [word(scene)?, word(output)?];
         if let Some(option) = options.iter().find(|option| option.contains(char::is_control)) {
-            return Err(Failure::Usage(
-                format!("a script cannot have the option `{}`", text::visible(option)),
-                Some("give options without line ends and other control characters".to_owned()),
-            ));
+            return Err(Failure::usage(format!(
+                "a script cannot have the option `{}`",
+                text::visible(option)
+            ))
+            .help("give options without line ends and other control characters"));
         }
         let part = format!("1/{parts}");
         let words = ["tabray", "render", "--resume", "--part", &part].map(OsString::from);
@@ -146,10 +147,11 @@ impl Order {
         let last = match is_film {
             false => format!("merge {image}"),
             true if FullRange::of(output).is_some() => {
-                return Err(Failure::Usage(
-                    format!("frames as `{}` cannot be resumed or put together", text::shown(output)),
-                    Some("name .png or .ppm files".to_owned()),
-                ));
+                return Err(Failure::usage(format!(
+                    "frames as `{}` cannot be resumed or put together",
+                    text::shown(output)
+                ))
+                .help("name .png or .ppm files"));
             }
             true => format!("film {image} --animation {}", word(&output.with_extension("apng"))?),
         };

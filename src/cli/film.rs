@@ -56,19 +56,21 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let outputs: Vec<_> = [&args.sheet, &args.animation].into_iter().flatten().collect();
     for path in &outputs {
         if let Some(frame) = frames.iter().find(|frame| are_same(frame, path)) {
-            return Err(Failure::Usage(
-                format!("`{}` is a frame, which would be replaced", text::shown(frame)),
-                Some("name another file".to_owned()),
-            ));
+            return Err(Failure::usage(format!(
+                "`{}` is a frame, which would be replaced",
+                text::shown(frame)
+            ))
+            .help("name another file"));
         }
     }
     if let [sheet, animation] = outputs[..]
         && sheet == animation
     {
-        return Err(Failure::Usage(
-            format!("the sheet and the animation cannot both be `{}`", text::shown(sheet)),
-            Some("name two files".to_owned()),
-        ));
+        return Err(Failure::usage(format!(
+            "the sheet and the animation cannot both be `{}`",
+            text::shown(sheet)
+        ))
+        .help("name two files"));
     }
     if let Some(path) = &args.sheet {
         sheet(path, &frames)?;
@@ -86,10 +88,11 @@ fn refuse_name(animation: &Path) -> Result<(), Failure> {
     if animation == Path::new("-") || animation.extension().is_some_and(is_png) {
         return Ok(());
     }
-    Err(Failure::Usage(
-        format!("an animation is an animated PNG, and `{}` is not named like one", text::shown(animation)),
-        Some("end the name in .apng or .png".to_owned()),
+    Err(Failure::usage(format!(
+        "an animation is an animated PNG, and `{}` is not named like one",
+        text::shown(animation)
     ))
+    .help("end the name in .apng or .png"))
 }
 
 /// Lists the frames in the order of their numbers.
@@ -112,19 +115,13 @@ fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
     let (first, last) = match (found.first(), found.last()) {
         (Some((first, _)), Some((last, _))) => (*first, *last),
         _ => {
-            return Err(Failure::Usage(
-                format!("there is no frame of `{}`", text::shown(name)),
-                Some("`tabray render SCENE --frames 1..240 -o IMAGE` renders frames".to_owned()),
-            ));
+            return Err(Failure::usage(format!("there is no frame of `{}`", text::shown(name)))
+                .help("`tabray render SCENE --frames 1..240 -o IMAGE` renders frames"));
         }
     };
     if let Some(missing) = (first..=last).zip(&found).find(|(number, (is, _))| number != is) {
-        return Err(Failure::Usage(
-            format!("frame {} of `{}` is missing", missing.0, text::shown(name)),
-            Some(
-                "its render may have been stopped, or its name may have another number of digits".to_owned(),
-            ),
-        ));
+        return Err(Failure::usage(format!("frame {} of `{}` is missing", missing.0, text::shown(name)))
+            .help("its render may have been stopped, or its name may have another number of digits"));
     }
     Ok(found.into_iter().map(|(_, path)| path).collect())
 }
@@ -172,13 +169,10 @@ fn animation(path: &Path, frames: &[PathBuf], rate: u16) -> Result<(), Failure> 
         let frame = picture::read(file)?;
         if frame.dimensions() != (width, height) {
             progress.end();
-            return Err(Failure::Usage(
-                format!(
-                    "`{}` does not have {width} x {height} pixels, as the first frame does",
-                    text::shown(file)
-                ),
-                None,
-            ));
+            return Err(Failure::usage(format!(
+                "`{}` does not have {width} x {height} pixels, as the first frame does",
+                text::shown(file)
+            )));
         }
         writer.write_image_data(&frame).map_err(cannot)?;
         progress.step();

@@ -47,7 +47,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
 fn one(registry: &Registry, path: &Path, only_check: bool) -> Result<bool, Failure> {
     let (name, bytes) = input::read(path)?;
     let text = String::from_utf8(bytes).map_err(|_| {
-        Failure::Usage(format!("`{name}` is not text"), Some("a scene is plain text, in UTF-8".to_owned()))
+        Failure::usage(format!("`{name}` is not text")).help("a scene is plain text, in UTF-8")
     })?;
     let (mark, body) = match text.strip_prefix('\u{feff}') {
         Some(body) => ("\u{feff}", body),

@@ -84,20 +84,18 @@ fn graded(registry: &Registry, args: &Args) -> Result<bool, Failure> {
     let [width, height] = model.camera.value.pixels;
     let size = picture.dimensions();
     if (size.0 as usize, size.1 as usize) != (width, height) {
-        return Err(Failure::Usage(
-            format!(
-                "`{}` has {} x {} pixels, and the image of the scene {width} x {height}",
-                text::shown(&args.picture),
-                size.0,
-                size.1
-            ),
-            Some(format!(
-                "if the picture is meant to be smaller, add `--set \"{}.pixeldim={} {}\"`",
-                model.camera.args.name(),
-                size.0,
-                size.1
-            )),
-        ));
+        return Err(Failure::usage(format!(
+            "`{}` has {} x {} pixels, and the image of the scene {width} x {height}",
+            text::shown(&args.picture),
+            size.0,
+            size.1
+        ))
+        .help(format!(
+            "if the picture is meant to be smaller, add `--set \"{}.pixeldim={} {}\"`",
+            model.camera.args.name(),
+            size.0,
+            size.1
+        )));
     }
     interrupt::catch(InterruptAction::Exit("the picture was not graded"))?;
     let mut make = || match source.load(registry, accuracy) {

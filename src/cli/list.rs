@@ -58,7 +58,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("`{} list` lists all entity types", program::name()),
         };
-        Failure::Usage(format!("there is no entity type `{name}`"), Some(help))
+        Failure::usage(format!("there is no entity type `{name}`")).help(help)
     })?;
     print(&details(entity))
 }

@@ -7,7 +7,7 @@ use crate::process::failure::Failure;
 use crate::process::progress::Progress;
 use crate::process::{memory, messages};
 use crate::rendering::part::beside as beside_image;
-use crate::rendering::part_files::{Parts, open, refuse};
+use crate::rendering::part_files::{Parts, open};
 use crate::rendering::{aov, bands};
 use std::fs;
 use std::io::{self, BufWriter};
@@ -105,10 +105,11 @@ impl Parts {
         if is_right || image == Path::new("-") || self.paths.iter().enumerate().all(is_named_like_it) {
             return Ok(());
         }
-        Err(refuse(
-            format!("the parts are those of a .{extension} image, not of `{}`", text::shown(image)),
-            &format!("end the name in .{extension}"),
+        Err(Failure::usage(format!(
+            "the parts are those of a .{extension} image, not of `{}`",
+            text::shown(image)
         ))
+        .help(format!("end the name in .{extension}")))
     }
 
     /// Writes the image.
@@ -149,10 +150,11 @@ impl Parts {
     /// Opens a file to write, which must not be a part.
     fn open(&self, path: &Path) -> Result<Output, Failure> {
         if self.paths.iter().any(|part| are_same(part, path)) {
-            return Err(refuse(
-                format!("`{}` is a part, which the image would replace", text::shown(path)),
-                "name another file for the image",
-            ));
+            return Err(Failure::usage(format!(
+                "`{}` is a part, which the image would replace",
+                text::shown(path)
+            ))
+            .help("name another file for the image"));
         }
         Output::open(path)
     }
@@ -210,7 +212,7 @@ impl Parts {
             let (path, reader) = match &mut reader {
                 Some((path, reader)) if reader.label.tiles[1] != index => (path, reader),
                 reader => {
-                    let changed = || refuse("the parts have changed".to_owned(), "begin again");
+                    let changed = || Failure::usage("the parts have changed").help("begin again");
                     let path = paths.next().ok_or_else(changed)?;
                     let (path, reader) = reader.insert((path, open(path)?));
                     (path, reader)
@@ -230,10 +232,8 @@ impl Parts {
             self.paths.iter().filter(is_damaged).map(|path| format!("`{}`", text::shown(path))).collect();
         let (shown, rest) = damaged.split_at(damaged.len().min(NAMED));
         let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
-        refuse(
-            format!("{} damaged: the checksum at the end is wrong{}", are_files(shown), more),
-            "render these parts again",
-        )
+        Failure::usage(format!("{} damaged: the checksum at the end is wrong{}", are_files(shown), more))
+            .help("render these parts again")
     }
 }
 

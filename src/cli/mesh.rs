@@ -71,7 +71,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let Args { output, name, .. } = args;
     let format = args.format.or_else(|| Format::of_name(output)).ok_or_else(|| {
         let message = format!("the name `{}` does not determine the format of the mesh", shown(output));
-        Failure::Usage(message, Some("end it in .stl, .obj or .ply, or give `--format`".to_owned()))
+        Failure::usage(message).help("end it in .stl, .obj or .ply, or give `--format`")
     })?;
     let model = args.scene.load(registry, None)?;
     output::refuse_source_by(output, "the mesh", &args.scene.path, &model)?;
@@ -151,7 +151,7 @@ fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
             "intervals cannot tell the inside of a mesh: leave it out of the scene".to_owned(),
         ),
     };
-    Failure::Usage(message, Some(help))
+    Failure::usage(message).help(help)
 }
 
 fn no_mesh(name: &str, error: f64, fault: &NoMesh) -> Failure {
@@ -171,5 +171,5 @@ fn no_mesh(name: &str, error: f64, fault: &NoMesh) -> Failure {
         ),
         NoMesh::Open => return Failure::Failed(format!("the mesh of `{name}` is not closed")),
     };
-    Failure::Usage(message, Some(help))
+    Failure::usage(message).help(help)
 }

@@ -69,13 +69,10 @@ pub fn inside(model: &Model, pixel: [i64; 2]) -> Result<[usize; 2], Failure> {
     let find = |side: usize| usize::try_from(pixel[side]).ok().filter(|at| *at < size[side]);
     find(0).zip(find(1)).map(|(x, y)| [x, y]).ok_or_else(|| {
         let ([x, y], [width, height]) = (pixel, size);
-        Failure::Usage(
-            format!("the image of {width} x {height} pixels has no pixel {x} {y}"),
-            Some(format!(
-                "X counts from the left, from 0 to {}, and Y from the bottom, from 0 to {}",
-                width - 1,
-                height - 1
-            )),
-        )
+        Failure::usage(format!("the image of {width} x {height} pixels has no pixel {x} {y}")).help(format!(
+            "X counts from the left, from 0 to {}, and Y from the bottom, from 0 to {}",
+            width - 1,
+            height - 1
+        ))
     })
 }

@@ -107,10 +107,8 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         let stop = args.stop.watch()?;
         let Some(frames) = frames else { return render_image(registry, &args, (&scene, path), &stop) };
         if path == Path::new("-") || input::is_standard(&scene) {
-            return Err(Failure::Usage(
-                "`--frames` needs a scene in a file, and writes files".to_owned(),
-                Some("name the scene, and the images with `-o FILE`".to_owned()),
-            ));
+            return Err(Failure::usage("`--frames` needs a scene in a file, and writes files")
+                .help("name the scene, and the images with `-o FILE`"));
         }
         let set = args.set.values.clone();
         args.set.set_by = args.frames.set_by();
@@ -132,10 +130,8 @@ pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         return Ok(());
     }
     if args.frames.frames.is_some() {
-        return Err(Failure::Usage(
-            "`--frames` takes one scene".to_owned(),
-            Some("render the scenes one after the other, each with `-o FILE`".to_owned()),
-        ));
+        return Err(Failure::usage("`--frames` takes one scene")
+            .help("render the scenes one after the other, each with `-o FILE`"));
     }
     let targets = several::targets(&args.scenes, output, args.extension())?;
     let stop = args.stop.watch()?;
@@ -153,13 +149,8 @@ impl Args {
         let scene = scene.clone();
         let path = several::target(self.output.as_deref(), &scene, self.extension())?;
         if path == Path::new("-") || input::is_standard(&scene) {
-            return Err(Failure::Usage(
-                "standard input and output are those of one machine".to_owned(),
-                Some(
-                    "name the scene, and the image with `-o FILE`, in a folder that all machines share"
-                        .to_owned(),
-                ),
-            ));
+            return Err(Failure::usage("standard input and output are those of one machine")
+                .help("name the scene, and the image with `-o FILE`, in a folder that all machines share"));
         }
         let (set, mut whole) = (self.set.values.clone(), None);
         self.set.set_by = self.frames.set_by();
@@ -366,10 +357,8 @@ impl ImageRender<'_> {
     fn part(&self, number: [usize; 2], mut stats: Stats) -> Result<(), Failure> {
         let Self { args, stop, path, format, model, region, .. } = self;
         if *path == Path::new("-") {
-            return Err(Failure::Usage(
-                "a part cannot be written beside standard output".to_owned(),
-                Some("name the image with `-o FILE`".to_owned()),
-            ));
+            return Err(Failure::usage("a part cannot be written beside standard output")
+                .help("name the image with `-o FILE`"));
         }
         debug::print(model, &args.debug)?;
         let beside = aov::requested(&args.aov, model)?;

@@ -86,10 +86,8 @@ impl Page {
     /// Opens the file. It must have the extension of a page, so that an image named by mistake is not overwritten.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html")) {
-            return Err(Failure::Usage(
-                format!("`{}` is not the name of an HTML file", text::shown(path)),
-                Some("end it in .html".to_owned()),
-            ));
+            return Err(Failure::usage(format!("`{}` is not the name of an HTML file", text::shown(path)))
+                .help("end it in .html"));
         }
         Ok(Self { path: path.to_owned(), output: Output::open(path)? })
     }

@@ -82,10 +82,7 @@ enum Event {
 
 pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     if args.scenes.iter().any(|scene| input::is_standard(scene)) {
-        return Err(Failure::Usage(
-            "standard input cannot be watched".to_owned(),
-            Some("name the scene's file".to_owned()),
-        ));
+        return Err(Failure::usage("standard input cannot be watched").help("name the scene's file"));
     }
     let accuracy = args.method.accuracy()?;
     let (sender, events) = mpsc::channel();

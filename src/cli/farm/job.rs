@@ -28,10 +28,8 @@ impl Job {
     pub fn refuse_absolute(&self, folder: &str) -> Result<(), Failure> {
         let is_outside = |word: &str| word.trim_start_matches(['\'', '$']).starts_with('/');
         match [&self.scene, &self.image].into_iter().find(|word| is_outside(word)) {
-            Some(path) => Err(Failure::Usage(
-                format!("{path} is not relative to {folder}"),
-                Some(format!("in the container, {folder} is mounted as /scenes")),
-            )),
+            Some(path) => Err(Failure::usage(format!("{path} is not relative to {folder}"))
+                .help(format!("in the container, {folder} is mounted as /scenes"))),
             None => Ok(()),
         }
     }
@@ -41,10 +39,8 @@ impl Job {
 pub fn word(path: &Path) -> Result<String, Failure> {
     let sound = path.to_str().filter(|path| !path.contains(char::is_control));
     let Some(sound) = sound else {
-        return Err(Failure::Usage(
-            format!("a script cannot name `{}`", text::shown(path)),
-            Some("give it a name in UTF-8 without line ends and other control characters".to_owned()),
-        ));
+        return Err(Failure::usage(format!("a script cannot name `{}`", text::shown(path)))
+            .help("give it a name in UTF-8 without line ends and other control characters"));
     };
     // A path is no option.
     let own = if sound.starts_with('-') { Path::new(".").join(path) } else { path.to_owned() };

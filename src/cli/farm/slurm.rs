@@ -62,10 +62,8 @@ fn log(folder: &Path, name: &str) -> Result<String, Failure> {
     let folder = folder.to_str().unwrap_or_default();
     // Slurm replaces nothing in a name with a backslash, so that all parts would have one log.
     if folder.contains('\\') {
-        return Err(Failure::Usage(
-            format!("the logs of Slurm cannot be in `{folder}`"),
-            Some("give the image a name without backslashes".to_owned()),
-        ));
+        return Err(Failure::usage(format!("the logs of Slurm cannot be in `{folder}`"))
+            .help("give the image a name without backslashes"));
     }
     Ok(quoted(&format!("{}/{name}", folder.replace('%', "%%"))))
 }

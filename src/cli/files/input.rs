@@ -119,7 +119,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     match bytes {
         Ok(bytes) if bytes.len() as u64 > LARGEST => {
             let message = format!("`{name}` is larger than {} MiB, too large for a scene", LARGEST >> 20);
-            Err(Failure::Usage(message, None))
+            Err(Failure::usage(message))
         }
         Ok(bytes) => Ok((name, bytes)),
         Err(error) => {

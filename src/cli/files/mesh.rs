@@ -23,7 +23,7 @@ fn model(path: &Path, wanted: Wanted) -> Result<Model, Failure> {
 
 fn refused(path: &Path, what: &str) -> Failure {
     let help = "a mesh is an OBJ, PLY, STL or glTF file".to_owned();
-    Failure::Usage(format!("cannot read `{}` as a mesh: {what}", text::shown(path)), Some(help))
+    Failure::usage(format!("cannot read `{}` as a mesh: {what}", text::shown(path))).help(help)
 }
 
 fn surface(path: &Path, model: Model) -> Result<Surface, Failure> {

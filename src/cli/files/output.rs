@@ -116,10 +116,8 @@ pub fn refuse_existing(path: &Path) -> Result<(), Failure> {
 }
 
 fn already_exists(path: &Path) -> Failure {
-    Failure::Usage(
-        format!("`{}` already exists", text::shown(path)),
-        Some("existing files are not overwritten: choose another name".to_owned()),
-    )
+    Failure::usage(format!("`{}` already exists", text::shown(path)))
+        .help("existing files are not overwritten: choose another name")
 }
 
 /// Returns the file that is written under this name: for a link its target, whether that exists or not.
@@ -142,10 +140,8 @@ pub fn refuse_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fai
 /// Refuses to replace a file that the model was read from, whatever its name here. `what` is what would replace it.
 pub fn refuse_source_by(path: &Path, what: &str, scene: &Path, model: &Model) -> Result<(), Failure> {
     let refused = |source| {
-        Err(Failure::Usage(
-            format!("`{}` is {source}, which {what} would replace", text::shown(path)),
-            Some("name another file with `-o FILE`".to_owned()),
-        ))
+        Err(Failure::usage(format!("`{}` is {source}, which {what} would replace", text::shown(path)))
+            .help("name another file with `-o FILE`"))
     };
     source(path, scene, model).map_or(Ok(()), refused)
 }
@@ -186,10 +182,8 @@ impl Output {
     pub fn open(path: &Path) -> Result<Self, Failure> {
         if path == Path::new("-") {
             if io::stdout().is_terminal() {
-                return Err(Failure::Usage(
-                    "standard output is a terminal, which cannot show images".to_owned(),
-                    Some("redirect it with `> FILE` or `|`, or name a file with `-o FILE`".to_owned()),
-                ));
+                return Err(Failure::usage("standard output is a terminal, which cannot show images")
+                    .help("redirect it with `> FILE` or `|`, or name a file with `-o FILE`"));
             }
             return Ok(Self::Standard);
         }
@@ -264,7 +258,7 @@ impl Write for Output {
 pub fn format_by_name(path: &Path, help: &str) -> Result<Format, Failure> {
     Format::of(path).ok_or_else(|| {
         let message = format!("the name `{}` does not determine the format of the image", text::shown(path));
-        Failure::Usage(message, Some(help.to_owned()))
+        Failure::usage(message).help(help)
     })
 }
 

@@ -10,8 +10,7 @@ use tabray_core::text;
 
 /// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
-    let cannot =
-        |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", text::shown(path)), None);
+    let cannot = |reason: String| Failure::usage(format!("cannot read `{}`: {reason}", text::shown(path)));
     let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
     decode(&mut BufReader::new(file)).map_err(cannot)
 }
@@ -26,7 +25,7 @@ impl Picture {
     /// Reads the image in a file.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let cannot =
-            |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", text::shown(path)), None);
+            |reason: String| Failure::usage(format!("cannot read `{}`: {reason}", text::shown(path)));
         let Some(format) = FullRange::of(path) else { return read(path).map(Self::Bytes) };
         let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
         let file: &mut dyn ImageBytes = &mut BufReader::new(file);

@@ -24,33 +24,33 @@ pub fn target(output: Option<&Path>, scene: &Path, extension: &str) -> Result<Pa
     match (output, scene.file_name()) {
         (Some(path), _) => Ok(path.to_owned()),
         (None, Some(name)) if !input::is_standard(scene) => Ok(Path::new(name).with_extension(extension)),
-        _ => Err(Failure::Usage(
-            "a scene from standard input has no name to give its image".to_owned(),
-            Some("name a file with `-o FILE`; `-o -` writes to standard output".to_owned()),
-        )),
+        _ => Err(Failure::usage("a scene from standard input has no name to give its image")
+            .help("name a file with `-o FILE`; `-o -` writes to standard output")),
     }
 }
 
 /// Returns the path of each scene's image in a folder, which is made where it does not exist.
 pub fn targets(scenes: &[PathBuf], output: Option<&Path>, extension: &str) -> Result<Vec<PathBuf>, Failure> {
-    let usage = |message: String, help: &str| Failure::Usage(message, Some(help.to_owned()));
     if let Some(file) = output.filter(|path| is_file_name(path)) {
         let message =
             format!("`{}` is not a folder for the images of {} scenes", text::shown(file), scenes.len());
-        return Err(usage(message, "name a folder with `-o DIR`; the images have the names of their scenes"));
+        let help = "name a folder with `-o DIR`; the images have the names of their scenes";
+        return Err(Failure::usage(message).help(help));
     }
     let mut of: HashMap<PathBuf, &Path> = HashMap::new();
     let mut targets = Vec::new();
     for scene in scenes {
         let name = scene.file_name().filter(|_| !input::is_standard(scene)).ok_or_else(|| {
-            let message = "a scene from standard input has no name to give its image".to_owned();
-            usage(message, "render it alone, and name a file with `-o FILE`")
+            Failure::usage("a scene from standard input has no name to give its image")
+                .help("render it alone, and name a file with `-o FILE`")
         })?;
         let target = output.unwrap_or(Path::new("")).join(Path::new(name).with_extension(extension));
         if let Some(other) = of.insert(target.clone(), scene) {
             let (one, other, target) = (text::shown(other), text::shown(scene), text::shown(target));
             let message = format!("`{one}` and `{other}` would have the same image, `{target}`");
-            return Err(usage(message, "render them one after the other, into folders of their own"));
+            return Err(
+                Failure::usage(message).help("render them one after the other, into folders of their own")
+            );
         }
         targets.push(target);
     }

@@ -50,7 +50,7 @@ pub fn of_name(path: &Path) -> Result<AnswerFormat, Failure> {
         _ if is_standard(path) => Ok(AnswerFormat::JsonLines),
         _ => {
             let help = "end it in .jsonl, .csv or .npy";
-            Err(Failure::Usage(format!("`{}` has no known format", text::shown(path)), Some(help.to_owned())))
+            Err(Failure::usage(format!("`{}` has no known format", text::shown(path))).help(help))
         }
     }
 }
@@ -75,7 +75,7 @@ pub fn open<'r>(path: &Path, what: &str) -> Result<Input<'r>, Failure> {
 pub fn refuse(path: &Path, bad: &[BadRay], what: &str) -> Failure {
     let lines: Vec<_> = bad.iter().map(|bad| format!("`{}`, {bad}", name(path))).collect();
     let help = format!("`--skip-bad` leaves such {what} out, and counts them");
-    Failure::Usage(lines.join("\nerror: "), Some(help))
+    Failure::usage(lines.join("\nerror: ")).help(help)
 }
 
 /// Warns of bad lines that were left out.
@@ -91,7 +91,7 @@ pub fn tell_of_bad(bad: u64, what: &str) {
 pub fn refuse_two_on_standard_input(scene: &Path, other: &Path, what: &str) -> Result<(), Failure> {
     if is_standard(scene) && is_standard(other) {
         let help = format!("give the {what} in a file, or the scene");
-        return Err(Failure::Usage("standard input cannot be both".to_owned(), Some(help)));
+        return Err(Failure::usage("standard input cannot be both").help(help));
     }
     Ok(())
 }

@@ -66,7 +66,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let rays = hard::rays(&args.threads.renderer()?, &Query::new(&model), wanted, args.seed);
     if rays.is_empty() {
         let help = "the scene has no edge, outline, seam or corner that rays from around its objects find";
-        return Err(Failure::Usage("no ray is hard to decide".to_owned(), Some(help.to_owned())));
+        return Err(Failure::usage("no ray is hard to decide").help(help));
     }
     let is_text = args.output.is_none() && format != AnswerFormat::Npy;
     let mut out = BufWriter::new(if is_text { Output::Standard } else { Output::open(path)? });

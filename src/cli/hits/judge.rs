@@ -82,10 +82,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         let format = format_by_name(picture, "end it in .png or .ppm")?;
         if model.camera.args.name() == UNUSED_CAMERA {
             let help = "give it a `look_at`; `tabray new scene --mesh FILE` makes a scene of a mesh";
-            return Err(Failure::Usage(
-                "the scene has no camera to show it".to_owned(),
-                Some(help.to_owned()),
-            ));
+            return Err(Failure::usage("the scene has no camera to show it").help(help));
         }
         output::refuse_source(picture, &args.scene, &model)?;
         output::refuse_source(picture, path, &model)?;
@@ -94,7 +91,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let picture = picture.transpose()?;
     interrupt::catch(InterruptAction::Exit("the answers were not judged"))?;
     let answers = TheirReader::new(open(path, "answers")?);
-    let mut answers = answers.map_err(|bad| Failure::Usage(format!("`{}`, {bad}", name(path)), None))?;
+    let mut answers = answers.map_err(|bad| Failure::usage(format!("`{}`, {bad}", name(path))))?;
     let (renderer, query) = (args.threads.renderer()?, Query::new(&model));
     let mut dots: Vec<Dot> = Vec::new();
     let mut each = |judged: &Judged| {

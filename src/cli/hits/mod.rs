@@ -139,7 +139,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         false => {
             let input = open(rays, "rays, six numbers a line,")?;
             let reader = RayReader::new(input, args.from.map(From::format));
-            Some(reader.map_err(|bad| Failure::Usage(format!("`{}`, {bad}", name(rays)), None))?)
+            Some(reader.map_err(|bad| Failure::usage(format!("`{}`, {bad}", name(rays))))?)
         }
     };
     let [width, height] = model.camera.value.pixels;
@@ -155,7 +155,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             (true, _) => "write .jsonl or .csv, or leave out `--skip-bad`",
             (false, _) => "write .jsonl or .csv, or give the rays as a .npy file",
         };
-        return Err(Failure::Usage(what.to_owned(), Some(help.to_owned())));
+        return Err(Failure::usage(what).help(help));
     }
     let path = args.output.as_deref().unwrap_or(Path::new("-"));
     if args.output.is_some() {

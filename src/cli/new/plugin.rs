@@ -124,13 +124,8 @@ fn is_checkout() -> Result<(), Failure> {
     if is_ours && Path::new("plugins").is_dir() {
         return Ok(());
     }
-    Err(Failure::Usage(
-        "this is not the top folder of a checkout of tabray".to_owned(),
-        Some(
-            "a plugin is compiled into the program: go to the folder with its `Cargo.toml` and `plugins/`"
-                .to_owned(),
-        ),
-    ))
+    Err(Failure::usage("this is not the top folder of a checkout of tabray")
+        .help("a plugin is compiled into the program: go to the folder with its `Cargo.toml` and `plugins/`"))
 }
 
 /// The names of the files in `plugins/` that are no plugins.
@@ -140,7 +135,7 @@ const OWN_FILES: [&str; 2] = ["build", "lib"];
 fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failure> {
     let no_name = |what: String| {
         let help = "a plugin's name must be a Rust module name, such as `tiled_plane`";
-        Err(Failure::Usage(what, Some(help.to_owned())))
+        Err(Failure::usage(what).help(help))
     };
     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(is_letter) {
@@ -160,7 +155,7 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
     } else {
         return Ok(());
     };
-    Err(Failure::Usage(what, Some("give the plugin another name".to_owned())))
+    Err(Failure::usage(what).help("give the plugin another name"))
 }
 
 /// Replaces the template's name by the plugin's.

@@ -34,10 +34,11 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let mut path = args.name.clone().into_os_string();
     let syntax = match ending {
         Some("ray") if args.toml => {
-            return Err(Failure::Usage(
-                format!("the file `{}` would not be read as TOML", text::shown(&args.name)),
-                Some("end its name in .toml, or leave out `--toml`".to_owned()),
-            ));
+            return Err(Failure::usage(format!(
+                "the file `{}` would not be read as TOML",
+                text::shown(&args.name)
+            ))
+            .help("end its name in .toml, or leave out `--toml`"));
         }
         Some("ray") => Syntax::Notes,
         Some("toml") => Syntax::Toml,

@@ -21,10 +21,8 @@ impl Args {
         let Some(level) = self.cpu else { return Ok(Cpu::best()) };
         Cpu::of(level).ok_or_else(|| {
             let here: Vec<_> = Cpu::all().map(|cpu| format!("`--cpu {cpu}`")).collect();
-            Failure::Usage(
-                format!("this machine does not have the instructions of `{}`", level.name()),
-                Some(format!("it has {}", here.join(", "))),
-            )
+            Failure::usage(format!("this machine does not have the instructions of `{}`", level.name()))
+                .help(format!("it has {}", here.join(", ")))
         })
     }
 }

@@ -61,10 +61,8 @@ impl Args {
         if let Some(frame) = self.frame {
             if !range.contains(&frame) {
                 let (first, last) = (range.start(), range.end());
-                return Err(Failure::Usage(
-                    format!("there is no frame {frame}"),
-                    Some(format!("`--frames {first}..{last}` has {first} to {last}")),
-                ));
+                return Err(Failure::usage(format!("there is no frame {frame}"))
+                    .help(format!("`--frames {first}..{last}` has {first} to {last}")));
             }
             return Ok(Some(vec![self.frame(picture, frame)]));
         }

@@ -29,10 +29,8 @@ impl Args {
     /// Returns the accuracy that is asked for, if any.
     pub fn accuracy(&self) -> Result<Option<Accuracy>, Failure> {
         if self.method == Some(Accuracy::Classic) && self.accuracy.is_some() {
-            return Err(Failure::Usage(
-                "the classic method has no accuracy to choose".to_owned(),
-                Some("leave out `--method classic` or `--accuracy`".to_owned()),
-            ));
+            return Err(Failure::usage("the classic method has no accuracy to choose")
+                .help("leave out `--method classic` or `--accuracy`"));
         }
         Ok(self.accuracy.or(self.method))
     }

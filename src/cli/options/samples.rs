@@ -62,12 +62,10 @@ impl Args {
                 return Ok(());
             }
             (Some(Samples::Fixed(samples)), Some(_)) => {
-                return Err(Failure::Usage(
-                    format!(
-                        "`--max-error` chooses the number of samples, and `--samples {samples}` fixes it"
-                    ),
-                    Some("give limits such as `--samples 4..1024`, or leave out one of the two".to_owned()),
-                ));
+                return Err(Failure::usage(format!(
+                    "`--max-error` chooses the number of samples, and `--samples {samples}` fixes it"
+                ))
+                .help("give limits such as `--samples 4..1024`, or leave out one of the two"));
             }
             (Some(Samples::From(least, most)), _) => [least, most],
             (None, Some(_)) => BY_ERROR,
@@ -76,17 +74,16 @@ impl Args {
         camera.adaptive = Some(Adaptive { most: limits[1], error: self.max_error.map(MaxError::of_white) });
         camera.certain = self.certain;
         if camera.certain && camera.accuracy == Accuracy::Classic {
-            return Err(Failure::Usage(
-                "`--certain` proves the true colours, but the classic method has colours of its own"
-                    .to_owned(),
-                Some("leave out `--certain`, or give `--method exact`".to_owned()),
-            ));
+            return Err(Failure::usage(
+                "`--certain` proves the true colours, but the classic method has colours of its own",
+            )
+            .help("leave out `--certain`, or give `--method exact`"));
         }
         if camera.certain && !camera.is_enclosed() {
-            return Err(Failure::Usage(
-                "`--certain` needs a camera that says where all rays through a pixel lie".to_owned(),
-                Some("use a `camera`, a `look_at` or an `orthographic`, or leave out `--certain`".to_owned()),
-            ));
+            return Err(Failure::usage(
+                "`--certain` needs a camera that says where all rays through a pixel lie",
+            )
+            .help("use a `camera`, a `look_at` or an `orthographic`, or leave out `--certain`"));
         }
         Ok(())
     }

@@ -71,12 +71,13 @@ impl Args {
             let in_proportion = (size.width as f64 * height as f64 / width as f64).round() as usize;
             camera.pixels = [size.width, size.height.unwrap_or(in_proportion.max(1))];
             if camera.pixels[1] > MAX_SIDE {
-                return Err(Failure::Usage(
-                    format!("an image {} pixels wide would be {} high", size.width, camera.pixels[1]),
-                    Some(format!(
-                        "the maximum is {MAX_SIDE} in each dimension: give a smaller width, or both as `WxH`"
-                    )),
-                ));
+                return Err(Failure::usage(format!(
+                    "an image {} pixels wide would be {} high",
+                    size.width, camera.pixels[1]
+                ))
+                .help(format!(
+                    "the maximum is {MAX_SIDE} in each dimension: give a smaller width, or both as `WxH`"
+                )));
             }
         }
         match self.crop {
@@ -107,16 +108,10 @@ impl Args {
             beside.push(".");
             beside.push(extension);
         }
-        Err(Failure::Usage(
-            format!(
-                "`{}` is an image of {width} x {height} pixels, and this one would have {new_width} x {new_height}",
-                text::shown(path)
-            ),
-            Some(format!(
-                "write it beside that one with `-o {}`, or replace that one with `--force`",
-                text::quoted(path.with_extension(beside).as_os_str())
-            )),
-        ))
+        let old = format!("`{}` is an image of {width} x {height} pixels", text::shown(path));
+        let beside = text::quoted(path.with_extension(beside).as_os_str());
+        Err(Failure::usage(format!("{old}, and this one would have {new_width} x {new_height}"))
+            .help(format!("write it beside that one with `-o {beside}`, or replace that one with `--force`")))
     }
 }
 
@@ -130,12 +125,14 @@ fn part(camera: &Sensor, [x, y, wide, high]: [i64; 4]) -> Result<Region, Failure
     };
     match (range(x, wide, width), range(y, high, height)) {
         (Some(columns), Some(rows)) => Ok(Region { columns, rows: height - rows.end..height - rows.start }),
-        _ => Err(Failure::Usage(
-            format!("the image of {width} x {height} pixels has no part of {wide} x {high} at {x} {y}"),
-            Some(format!(
-                "X counts from the left and Y from the bottom, both from 0; W and H are at least 1, X + W at most {width}, and Y + H at most {height}"
-            )),
-        )),
+        _ => {
+            let message =
+                format!("the image of {width} x {height} pixels has no part of {wide} x {high} at {x} {y}");
+            Err(Failure::usage(message).help(format!(
+                "X counts from the left and Y from the bottom, both from 0; W and H are at least 1, X + W at most \
+                 {width}, and Y + H at most {height}"
+            )))
+        }
     }
 }
 

@@ -184,10 +184,10 @@ impl Args {
     /// Refuses an image that takes more memory at one time, in bytes, than the limit leaves.
     pub fn refuse_too_large(&self, bytes: usize) -> Result<(), Failure> {
         match (memory::chosen(), self.memory_left()) {
-            (Some(limit), Some(left)) if left < bytes as u64 => Err(Failure::Usage(
-                format!("{limit} of memory is not enough for this image"),
-                Some(format!("it needs about {} more", ByteSize(bytes as u64 - left))),
-            )),
+            (Some(limit), Some(left)) if left < bytes as u64 => {
+                Err(Failure::usage(format!("{limit} of memory is not enough for this image"))
+                    .help(format!("it needs about {} more", ByteSize(bytes as u64 - left))))
+            }
             _ => Ok(()),
         }
     }
@@ -197,16 +197,14 @@ impl Args {
         let Some(limit) = memory::chosen() else { return Ok(BAND) };
         let Some(now) = memory::now() else {
             let message = "this system does not report how much memory the program uses";
-            return Err(Failure::Usage(message.to_owned(), Some("leave out `--max-memory`".to_owned())));
+            return Err(Failure::usage(message).help("leave out `--max-memory`"));
         };
         let row = ROW * width as u64;
         let strip = PIXEL * (TILE * width) as u64;
         let least = now + memory::ASIDE + row + strip;
         if limit.as_u64() < least {
-            return Err(Failure::Usage(
-                format!("{limit} of memory is not enough for this image"),
-                Some(format!("it needs at least about {}", ByteSize(least))),
-            ));
+            return Err(Failure::usage(format!("{limit} of memory is not enough for this image"))
+                .help(format!("it needs at least about {}", ByteSize(least))));
         }
         // Three quarters are left for the rays: how much their reflections need shows only during the render.
         let bytes = ((limit.as_u64() - now - row) / 4).max(strip);

@@ -41,7 +41,7 @@ pub fn matches(command: Command) -> Result<ArgMatches, Failure> {
     if let Some(scene) = scene.filter(|word| is_scene(word)) {
         let line = format!("{} render {}", program::name(), quoted(scene.as_ref()));
         let message = format!("`{scene}` is a scene, not a command");
-        return Err(Failure::Usage(message, Some(format!("`{line}` renders it"))));
+        return Err(Failure::usage(message).help(format!("`{line}` renders it")));
     }
     let near = given(ContextKind::InvalidArg).filter(|_| error.kind() == ErrorKind::UnknownArgument);
     let near = near.and_then(|option| {

@@ -28,7 +28,7 @@ impl Args {
         let Some(root) = &self.root else { return Ok(()) };
         files::confine(root).map_err(|error| {
             let reason = text::reason(&error);
-            Failure::Usage(format!("cannot keep to the folder `{}`: {reason}", text::shown(root)), None)
+            Failure::usage(format!("cannot keep to the folder `{}`: {reason}", text::shown(root)))
         })
     }
 }

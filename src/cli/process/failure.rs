@@ -39,6 +39,19 @@ impl From<io::Error> for Failure {
 }
 
 impl Failure {
+    /// Makes a failure of a request that makes no sense.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self::Usage(message.into(), None)
+    }
+
+    /// Adds the cure, or what was probably meant.
+    pub fn help(mut self, cure: impl Into<String>) -> Self {
+        if let Self::Usage(_, help) | Self::Unread(_, help) = &mut self {
+            *help = Some(cure.into());
+        }
+        self
+    }
+
     /// Makes a failure of a path that could not be written, with the reason.
     pub fn cannot_write(path: &Path, error: &io::Error) -> Self {
         if path == Path::new("-") {
@@ -59,7 +72,7 @@ impl Failure {
     pub fn cannot_read(path: &Path, error: &io::Error) -> Self {
         let message = format!("cannot read `{}`: {}", text::shown(path), text::reason(error));
         match error.kind() {
-            io::ErrorKind::InvalidData => Self::Usage(message, None),
+            io::ErrorKind::InvalidData => Self::usage(message),
             _ => Self::Unread(message, None),
         }
     }

@@ -46,10 +46,11 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
         return Ok(Vec::new());
     }
     if !matches!(output, Output::File(..)) {
-        return Err(Failure::Usage(
-            format!("cannot write the images of `--aov` beside `{}`", text::shown(main)),
-            Some("name a file for the main image with `-o FILE`".to_owned()),
-        ));
+        return Err(Failure::usage(format!(
+            "cannot write the images of `--aov` beside `{}`",
+            text::shown(main)
+        ))
+        .help("name a file for the main image with `-o FILE`"));
     }
     let aovs = requested(args, model)?;
     let opened = |path: PathBuf| Output::open(&path).map(|output| (path, output));
@@ -69,10 +70,10 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
 pub fn requested(args: &Args, model: &Model) -> Result<Vec<Aov>, Failure> {
     let [width, height] = model.camera.value.pixels;
     if !args.aov.is_empty() && width * height > LARGEST {
-        return Err(Failure::Usage(
-            format!("an image of {width} x {height} pixels is too large for `--aov`"),
-            Some(format!("the maximum is {LARGEST} pixels, such as 8192 x 8192")),
-        ));
+        return Err(Failure::usage(format!(
+            "an image of {width} x {height} pixels is too large for `--aov`"
+        ))
+        .help(format!("the maximum is {LARGEST} pixels, such as 8192 x 8192")));
     }
     let mut aovs: Vec<Aov> = Vec::new();
     for aov in &args.aov {

@@ -154,11 +154,9 @@ impl Job<'_> {
 
 /// Returns the error for options that images of full range cannot serve.
 pub fn refuse_full_range(path: &Path, what: &str) -> Failure {
-    Failure::Usage(
-        format!(
-            "`{}` cannot be {what}: an EXR or a PFM is written only when it is complete",
-            text::shown(path)
-        ),
-        Some("name a .png or .ppm file, or leave out the option".to_owned()),
-    )
+    Failure::usage(format!(
+        "`{}` cannot be {what}: an EXR or a PFM is written only when it is complete",
+        text::shown(path)
+    ))
+    .help("name a .png or .ppm file, or leave out the option")
 }

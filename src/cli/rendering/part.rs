@@ -79,10 +79,8 @@ pub fn tiles(
 ) -> Result<Range<usize>, Failure> {
     let ([width, height], tiles) = (region.size(), Grid { size: region.size() }.count());
     if of > tiles {
-        return Err(Failure::Usage(
-            format!("an image of {width} x {height} pixels cannot have {of} parts"),
-            Some(format!("it has {}, and a part at least one", text::count(tiles, "tile"))),
-        ));
+        return Err(Failure::usage(format!("an image of {width} x {height} pixels cannot have {of} parts"))
+            .help(format!("it has {}, and a part at least one", text::count(tiles, "tile"))));
     }
     let ends = division::divide(renderer, plan, [&region.columns, &region.rows], of);
     Ok(ends[number - 1]..ends[number])

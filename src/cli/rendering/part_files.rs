@@ -57,10 +57,10 @@ impl Parts {
                         .map_err(|error| Failure::cannot_read(&other.path, &error))?
                 {
                     let (one, other) = (text::shown(&other.path), text::shown(path));
-                    return Err(refuse(
-                        format!("`{one}` and `{other}` are two versions of part {number}"),
-                        "leave out the one that is wrong",
-                    ));
+                    return Err(Failure::usage(format!(
+                        "`{one}` and `{other}` are two versions of part {number}"
+                    ))
+                    .help("leave out the one that is wrong"));
                 }
                 continue;
             }
@@ -68,25 +68,25 @@ impl Parts {
             first.get_or_insert((path, label));
         }
         let Some((_, label)) = first else {
-            return Err(refuse(
-                format!("there is no part of `{}`", text::shown(image)),
-                "`tabray render SCENE -o IMAGE --part 1/16` makes the first of 16 parts",
-            ));
+            return Err(Failure::usage(format!("there is no part of `{}`", text::shown(image)))
+                .help("`tabray render SCENE -o IMAGE --part 1/16` makes the first of 16 parts"));
         };
         let of = label.part[1];
         if found.len() < of {
             let missing: Vec<_> = (1..=of).filter(|number| !found.contains_key(number)).collect();
             let begun =
                 missing.iter().find(|number| resume::beside(&part::beside(image, [**number, of])).exists());
-            return Err(Failure::Usage(
-                format!("`{}` lacks {} of {of}", text::shown(image), named(&missing)),
-                Some(match begun {
-                    Some(number) => format!(
-                        "part {number} is begun: `tabray render --part {number}/{of} --resume` renders the rest"
-                    ),
-                    None => format!("render each with `tabray render --part {}/{of}`", missing[0]),
-                }),
-            ));
+            return Err(Failure::usage(format!(
+                "`{}` lacks {} of {of}",
+                text::shown(image),
+                named(&missing)
+            ))
+            .help(match begun {
+                Some(number) => format!(
+                    "part {number} is begun: `tabray render --part {number}/{of} --resume` renders the rest"
+                ),
+                None => format!("render each with `tabray render --part {}/{of}`", missing[0]),
+            }));
         }
         refuse_gaps(&found, &label, image)?;
         Ok(Self { label, paths: found.into_values().map(|part| part.path).collect() })
@@ -109,7 +109,8 @@ impl Parts {
 
 /// Refuses parts, which are complete by their numbers, if their tiles are not the tiles of the image, each once.
 fn refuse_gaps(found: &BTreeMap<usize, PartFile>, label: &Label, image: &Path) -> Result<(), Failure> {
-    let refuse_part = |message| Err(refuse(message, "render the parts anew with one build of the program"));
+    let refuse_part =
+        |message| Err(Failure::usage(message).help("render the parts anew with one build of the program"));
     let mut next = 0;
     for (number, part) in found {
         if part.tiles.start != next {
@@ -166,15 +167,13 @@ fn same((path, label): (&Path, &Label), (other, first): (&Path, &Label)) -> Resu
     if differences.is_empty() {
         return Ok(());
     }
-    Err(refuse(
-        format!(
-            "`{}` is not a part of the same image as `{}`: {}",
-            text::shown(path),
-            text::shown(other),
-            differences.join(", ")
-        ),
-        "name the parts that belong together: `tabray merge IMAGE PARTS`",
+    Err(Failure::usage(format!(
+        "`{}` is not a part of the same image as `{}`: {}",
+        text::shown(path),
+        text::shown(other),
+        differences.join(", ")
     ))
+    .help("name the parts that belong together: `tabray merge IMAGE PARTS`"))
 }
 
 /// Opens a part, which must be whole.
@@ -185,21 +184,16 @@ pub fn open(path: &Path) -> Result<Reader, Failure> {
     };
     let opened = files::open(path).and_then(Reader::open).and_then(whole);
     opened.map_err(|error| match error.kind() {
-        io::ErrorKind::Unsupported => {
-            refuse(format!("cannot read `{}`: {error}", text::shown(path)), "render the parts again")
-        }
+        io::ErrorKind::Unsupported => Failure::usage(format!("cannot read `{}`: {error}", text::shown(path)))
+            .help("render the parts again"),
         _ => Failure::cannot_read(path, &error),
     })
-}
-
-pub fn refuse(message: String, help: &str) -> Failure {
-    Failure::Usage(message, Some(help.to_owned()))
 }
 
 /// Lists the parts beside an image, by their names.
 fn beside(image: &Path) -> Result<Vec<PathBuf>, Failure> {
     if input::is_standard(image) {
-        return Err(refuse("standard output has no parts beside it".to_owned(), "name the parts"));
+        return Err(Failure::usage("standard output has no parts beside it").help("name the parts"));
     }
     let folder = image.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let name = image.file_name().unwrap_or_default().to_string_lossy().into_owned() + ".part-";

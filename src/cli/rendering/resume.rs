@@ -40,10 +40,8 @@ impl ResumedImage {
     ) -> Result<Option<Self>, Failure> {
         if !matches!(output, Output::File(..)) {
             return if wanted {
-                Err(Failure::Usage(
-                    format!("cannot keep a checkpoint beside `{}`", text::shown(picture)),
-                    Some("name a file for the image with `-o FILE`, or leave out `--resume`".to_owned()),
-                ))
+                Err(Failure::usage(format!("cannot keep a checkpoint beside `{}`", text::shown(picture)))
+                    .help("name a file for the image with `-o FILE`, or leave out `--resume`"))
             } else {
                 Ok(None)
             };
@@ -84,10 +82,12 @@ impl ResumedImage {
             differences.push("it is another part".to_owned());
         }
         if !differences.is_empty() {
-            return Err(Failure::Usage(
-                format!("`{}` belongs to another image: {}", text::shown(&path), differences.join(", ")),
-                Some(BEGIN_ANEW.to_owned()),
-            ));
+            return Err(Failure::usage(format!(
+                "`{}` belongs to another image: {}",
+                text::shown(&path),
+                differences.join(", ")
+            ))
+            .help(BEGIN_ANEW));
         }
         // The format may be another: it says how the image is written.
         if (there.size, there.what.pixel()) != (label.size, label.what.pixel()) {
@@ -128,7 +128,7 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
         io::ErrorKind::InvalidData => "it is not a checkpoint, or it is corrupt".to_owned(),
         _ => text::reason(error),
     };
-    Failure::Usage(format!("cannot read `{}`: {reason}", text::shown(path)), Some(BEGIN_ANEW.to_owned()))
+    Failure::usage(format!("cannot read `{}`: {reason}", text::shown(path))).help(BEGIN_ANEW)
 }
 
 /// Writes an unfinished image to its path, and a checkpoint beside it, whose path is returned. `written` contains

@@ -67,7 +67,7 @@ fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Resul
 /// Returns the old and the new content of a snapshot.
 fn change(snapshot: &Pending) -> Result<Change, Failure> {
     let unreadable = |reason: String| {
-        Failure::Usage(format!("cannot show the snapshot `{}`: {reason}", text::shown(&snapshot.path)), None)
+        Failure::usage(format!("cannot show the snapshot `{}`: {reason}", text::shown(&snapshot.path)))
     };
     let (old, new) = (snapshot.old.as_ref(), &snapshot.new);
     if let Some(new) = new.text() {

@@ -60,12 +60,10 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
         return match output::append_to_path(snapshot, ".new") {
             new if new.is_file() => Ok(vec![new]),
             _ if snapshot.is_file() => {
-                Err(Failure::Usage(format!("nothing is pending for `{}`", text::shown(path)), None))
+                Err(Failure::usage(format!("nothing is pending for `{}`", text::shown(path))))
             }
-            _ => Err(Failure::Usage(
-                format!("there is no folder or snapshot `{}`", text::shown(path)),
-                Some("name a folder of snapshots, or the `.snap` file of one".to_owned()),
-            )),
+            _ => Err(Failure::usage(format!("there is no folder or snapshot `{}`", text::shown(path)))
+                .help("name a folder of snapshots, or the `.snap` file of one")),
         };
     }
     let mut found = Vec::new();
@@ -90,7 +88,7 @@ impl Pending {
     pub fn read(new: &Path) -> Result<Self, Failure> {
         let path = new.with_extension("");
         let cannot = |file: &Path, reason: &str| {
-            Failure::Usage(format!("cannot read the snapshot `{}`: {reason}", text::shown(file)), None)
+            Failure::usage(format!("cannot read the snapshot `{}`: {reason}", text::shown(file)))
         };
         let file = files::open(new)
             .and_then(io::read_to_string)

@@ -30,13 +30,11 @@ impl Reach {
     /// If no browser could ask for the page by a name that is let in.
     pub fn check(&self) -> Result<(), Failure> {
         if self.host.is_unspecified() && self.allow_host.is_empty() {
-            return Err(Failure::Usage(
-                format!(
-                    "`--host {}` stands for all addresses of this machine, and no host name is allowed",
-                    self.host
-                ),
-                Some("add `--allow-host NAME`, with the name that browsers ask for".to_owned()),
-            ));
+            return Err(Failure::usage(format!(
+                "`--host {}` stands for all addresses of this machine, and no host name is allowed",
+                self.host
+            ))
+            .help("add `--allow-host NAME`, with the name that browsers ask for"));
         }
         Ok(())
     }

@@ -71,10 +71,9 @@ pub fn prove(
     progress: &Progress,
 ) -> Result<Proof, Failure> {
     if plan.camera.accuracy == Accuracy::Classic {
-        return Err(Failure::Usage(
-            "the colours of the classic method cannot be proven: it renders what the notes' formulas round to".to_owned(),
-            Some("add `--method exact`".to_owned()),
-        ));
+        let message = "the colours of the classic method cannot be proven: it renders what the notes' formulas \
+                       round to";
+        return Err(Failure::usage(message).help("add `--method exact`"));
     }
     plan.camera.samples = args.samples.unwrap_or(plan.camera.samples);
     let end = args.time_limit.map(|limit| Instant::now() + limit);
