@@ -39,14 +39,19 @@ impl<'b> Iterator for Blocks<'b> {
     }
 }
 
-/// Reads a text block by block on all cores. `count` counts elements in a block, `read` reads a block, given the count
-/// before it, and `take` receives the results in the order of the text.
+/// The number of lines of a block, or the first error in it with the number of its line, from 1.
+pub(super) type Lines = Result<usize, (usize, String)>;
+
+/// Reads a text block by block on all cores. `count` counts elements in a block, `read` reads a block up to the first
+/// error, given the count before it, and `take` receives what it has read in the order of the text, with the number of
+/// lines before it, which is `line` at first.
 pub(super) fn read<T: Send, C: Add<Output = C> + Copy + Default + Send + Sync>(
     text: &[u8],
+    line: &mut usize,
     continues: fn(&[u8]) -> bool,
     count: impl Fn(&[u8]) -> C + Sync,
-    read: impl Fn(&[u8], C) -> T + Sync,
-    mut take: impl FnMut(T) -> Result<(), ReadError>,
+    read: impl Fn(&[u8], C) -> (T, Lines) + Sync,
+    mut take: impl FnMut(T, usize) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let mut blocks = Blocks { rest: text, continues };
     let mut before = C::default();
@@ -64,7 +69,10 @@ pub(super) fn read<T: Send, C: Add<Output = C> + Copy + Default + Send + Sync>(
             })
             .collect();
         let parts = parallel::map(some.len(), |block| read(some[block], befores[block]));
-        parts.into_iter().try_for_each(&mut take)?;
+        for (part, lines) in parts {
+            take(part, *line)?;
+            *line += lines.map_err(|(number, message)| ReadError::line(*line + number, message))?;
+        }
     }
 }
 
@@ -86,6 +94,14 @@ pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
         let end = memchr(b'\n', text);
         rest = end.map(|end| &text[end + 1..]).filter(|rest| !rest.is_empty());
         Some(&text[..end.unwrap_or(text.len())])
+    })
+}
+
+/// Calls `each` with the number of each line, from 1, and the line, until an error.
+pub(super) fn each_line(text: &[u8], mut each: impl FnMut(usize, &[u8]) -> Result<(), String>) -> Lines {
+    lines(text).enumerate().try_fold(0, |_, (before, line)| {
+        let number = before + 1;
+        each(number, line).map(|()| number).map_err(|message| (number, message))
     })
 }
 

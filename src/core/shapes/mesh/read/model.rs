@@ -37,6 +37,19 @@ pub struct Model {
     pub files: Vec<PathBuf>,
 }
 
+impl Model {
+    /// Adds the vertices, the faces and their attributes of a further part of a file.
+    pub(super) fn append(&mut self, part: Self, budget: &MemoryBudget) -> Result<(), ReadError> {
+        let [vertices, faces] =
+            [self.vertices.len() + part.vertices.len(), self.faces.len() + part.faces.len()];
+        budget.holds(vertices, faces).map_err(ReadError::file)?;
+        self.vertices.extend(part.vertices);
+        self.faces.extend(part.faces);
+        self.attributes.extend(part.attributes);
+        Ok(())
+    }
+}
+
 /// The optional contents of a file, beside its triangles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wanted {

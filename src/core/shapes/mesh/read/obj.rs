@@ -2,7 +2,7 @@
 //! colours. Other contents are ignored.
 
 use super::at_corners::{AtCorners, Attributes, NO_VALUE};
-use super::blocks::{self, Words, words};
+use super::blocks::{self, Lines, Words, words};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, shown};
 use super::mtl;
 use super::polygons::Polygons;
@@ -34,23 +34,18 @@ impl Add for Counts {
 /// The contents of a block of a file.
 #[derive(Default)]
 struct Part {
-    vertices: Vec<DVec3>,
-    faces: Vec<[u32; 3]>,
+    model: Model,
     polygons: Polygons,
     /// The names of materials, each with the number of the block's triangles before it and its line. An empty name
     /// stands for the mesh's own material.
     uses: Vec<(usize, String, usize)>,
     /// The names after `mtllib`, and their line.
     libraries: Vec<(Vec<u8>, usize)>,
-    attributes: Attributes,
     /// The colours of vertices as written, up to the last vertex with a colour, or NaN for a vertex without one.
     colours: Vec<[f32; 3]>,
     /// For each of `v`, `vt` and `vn`, the largest index that a face refers to ahead of its element, and the line of
     /// the face.
     ahead: [Option<(u32, usize)>; 3],
-    lines: usize,
-    /// The first error, with its line.
-    fault: Option<(usize, String)>,
 }
 
 /// Reads the text of a file in a folder.
@@ -58,21 +53,16 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
     let mut model = Model::default();
     let mut names = HashMap::new();
     let mut polygons = Polygons::default();
-    let (mut slot, mut line, mut ahead) = (0, 0, [const { Vec::new() }; 3]);
+    let (mut slot, mut ahead) = (0, [const { Vec::new() }; 3]);
     let (mut libraries, mut colours) = (Vec::new(), Vec::new());
-    let take = |part: Part| {
-        budget
-            .holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
-            .map_err(ReadError::file)?;
-        let before = model.faces.len();
+    let take = |part: Part, line: usize| {
+        let [vertices, before] = [model.vertices.len(), model.faces.len()];
+        model.append(part.model, budget)?;
         if !part.colours.is_empty() {
-            colours.resize(model.vertices.len(), NO_COLOUR);
+            colours.resize(vertices, NO_COLOUR);
             colours.extend(part.colours);
         }
-        model.vertices.extend(part.vertices);
-        model.faces.extend(part.faces);
         polygons.append(part.polygons, before);
-        model.attributes.extend(part.attributes);
         for (all, found) in ahead.iter_mut().zip(part.ahead) {
             all.extend(found.map(|(index, number)| (index, line + number)));
         }
@@ -97,12 +87,10 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
         if slot != 0 || !model.slots.is_empty() {
             model.slots.resize(model.faces.len(), slot);
         }
-        let fault = part.fault.map(|(number, message)| ReadError::line(line + number, message));
-        line += part.lines;
-        fault.map_or(Ok(()), Err)
+        Ok(())
     };
     let read = |block: &[u8], before| Part::read(block, before, budget);
-    blocks::read(bytes, continues, counts, read, take)?;
+    blocks::read(bytes, &mut 0, continues, counts, read, take)?;
     let Attributes { normals, uv, .. } = &model.attributes;
     let counts = [model.vertices.len(), uv.values.len(), normals.values.len()];
     for ((ahead, count), [name, _]) in ahead.into_iter().zip(counts).zip(NAMES) {
@@ -165,18 +153,16 @@ fn continues(line: &[u8]) -> bool {
 }
 
 /// Calls `each` with the number of each line, from 1, and the line, until an error. Continued lines count as one line,
-/// without a comment. Returns the number of lines.
-fn each_line<'b, E>(
-    block: &'b [u8],
-    mut each: impl FnMut(usize, Cow<'b, [u8]>) -> Result<(), E>,
-) -> Result<usize, E> {
+/// without a comment.
+fn each_line<'b>(block: &'b [u8], mut each: impl FnMut(usize, Cow<'b, [u8]>) -> Result<(), String>) -> Lines {
     let mut lines = blocks::lines(block);
     let mut count = 0;
     while let Some(line) = lines.next() {
         count += 1;
         let first = count;
+        let mut each = |line| each(first, line).map_err(|message| (first, message));
         if !continues(line) {
-            each(first, Cow::Borrowed(line))?;
+            each(Cow::Borrowed(line))?;
             continue;
         }
         let (mut whole, mut next) = (Vec::new(), Some(line));
@@ -188,7 +174,7 @@ fn each_line<'b, E>(
             next = if goes_on { lines.next() } else { None };
             count += usize::from(next.is_some());
         }
-        each(first, Cow::Owned(whole))?;
+        each(Cow::Owned(whole))?;
     }
     Ok(count)
 }
@@ -211,17 +197,11 @@ fn counts(block: &[u8]) -> Counts {
 
 impl Part {
     /// Reads a block up to the first error, given the counts before it.
-    fn read(block: &[u8], before: Counts, budget: &MemoryBudget) -> Self {
-        let (mut part, mut counts) = (Self::default(), before);
-        let mut corners = Default::default();
-        let read = each_line(block, |number, line| {
-            part.line(number, &line, &mut counts, &mut corners, budget).map_err(|message| (number, message))
-        });
-        match read {
-            Ok(lines) => part.lines = lines,
-            Err(fault) => part.fault = Some(fault),
-        }
-        part
+    fn read(block: &[u8], mut counts: Counts, budget: &MemoryBudget) -> (Self, Lines) {
+        let (mut part, mut corners) = (Self::default(), Default::default());
+        let lines =
+            each_line(block, |number, line| part.line(number, &line, &mut counts, &mut corners, budget));
+        (part, lines)
     }
 
     fn line(
@@ -233,7 +213,7 @@ impl Part {
         budget: &MemoryBudget,
     ) -> Result<(), String> {
         let wanted = budget.wanted;
-        let Attributes { normals, uv, .. } = &mut self.attributes;
+        let Attributes { normals, uv, .. } = &mut self.model.attributes;
         let mut words = words(&line[..memchr(b'#', line).unwrap_or(line.len())]);
         match words.next() {
             Some(b"v") => {
@@ -245,12 +225,12 @@ impl Part {
                     return Err("there are more than 2^31 vertices".to_owned());
                 }
                 counts[0] += 1;
-                self.vertices.push(DVec3::from(at));
+                self.model.vertices.push(DVec3::from(at));
                 if wanted.materials.is_some()
                     && let [Ok(red), Ok(green), Ok(blue)] =
                         [part(&mut words), part(&mut words), part(&mut words)]
                 {
-                    self.colours.resize(self.vertices.len() - 1, NO_COLOUR);
+                    self.colours.resize(self.model.vertices.len() - 1, NO_COLOUR);
                     self.colours.push([red, green, blue]);
                 }
             }
@@ -288,18 +268,18 @@ impl Part {
                     }
                     // A polygon may be as long as the file.
                     if corners[0].len().is_multiple_of(1 << 16) {
-                        budget.holds(counts[0], self.faces.len() + corners[0].len())?;
+                        budget.holds(counts[0], self.model.faces.len() + corners[0].len())?;
                     }
                 }
-                budget.holds(counts[0], self.faces.len() + corners[0].len())?;
-                self.polygons.add(&corners[0], &mut self.faces);
+                budget.holds(counts[0], self.model.faces.len() + corners[0].len())?;
+                self.polygons.add(&corners[0], &mut self.model.faces);
                 Polygons::add_values(&corners[1], Arc::make_mut(&mut uv.faces));
                 Polygons::add_values(&corners[2], Arc::make_mut(&mut normals.faces));
             }
             Some(b"mtllib") if wanted.materials.is_some() => {
                 self.libraries.push((after_first_word(line).to_vec(), number))
             }
-            Some(b"usemtl") => self.uses.push((self.faces.len(), mtl::material(line), number)),
+            Some(b"usemtl") => self.uses.push((self.model.faces.len(), mtl::material(line), number)),
             _ => {}
         }
         Ok(())

@@ -1,23 +1,16 @@
 //! The elements of a PLY as text. Each has a line, but other layouts are accepted.
 
-use super::at_corners::Attributes;
-use super::blocks::{self, Words, is_blank, never, words};
+use super::blocks::{self, Lines, Words, is_blank, never, words};
 use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, coordinate};
 use super::ply_header::{Field, Kind, Number, Section, Vertex, coordinates, unexpected};
 use super::polygons::Polygons;
-use glam::DVec3;
 use memchr::memchr_iter;
 
 /// The contents of a block of a text.
 #[derive(Default)]
 struct Part {
-    vertices: Vec<DVec3>,
-    faces: Vec<[u32; 3]>,
+    model: Model,
     polygons: Polygons,
-    attributes: Attributes,
-    lines: usize,
-    /// The first error, with its line.
-    fault: Option<(usize, String)>,
     given: Vec<i64>,
     corners: Vec<u32>,
 }
@@ -44,8 +37,9 @@ fn by_lines(
     let (mut model, mut polygons) = Default::default();
     for section in sections {
         let (lines, after) = rest.split_at(end_of(rest, section.count)?);
-        let take = |part: Part| add(part, &mut model, &mut polygons, &mut line, budget);
-        blocks::read(lines, never, count, |block, first| Part::read(block, first, section, budget), take)?;
+        let take = |part, _| add(part, &mut model, &mut polygons, budget);
+        let read = |block: &[u8], first| Part::read(block, first, section, budget);
+        blocks::read(lines, &mut line, never, count, read, take)?;
         rest = after;
     }
     Ok((model, polygons))
@@ -70,30 +64,21 @@ fn by_words(
                 ReadError::line(line + blocks::line_ends(before) + 1, message)
             })?;
         }
-        add(part, &mut model, &mut polygons, &mut 0, budget)?;
+        add(part, &mut model, &mut polygons, budget)?;
     }
     Ok((model, polygons))
 }
 
-/// Adds the contents of a part that begins after this line.
 fn add(
     part: Part,
     model: &mut Model,
     polygons: &mut Polygons,
-    line: &mut usize,
     budget: &MemoryBudget,
 ) -> Result<(), ReadError> {
     let before = model.faces.len();
-    budget
-        .holds(model.vertices.len() + part.vertices.len(), before + part.faces.len())
-        .map_err(ReadError::file)?;
-    model.vertices.extend(part.vertices);
-    model.faces.extend(part.faces);
-    model.attributes.extend(part.attributes);
+    model.append(part.model, budget)?;
     polygons.append(part.polygons, before);
-    let fault = part.fault.map(|(number, message)| ReadError::line(*line + number, message));
-    *line += part.lines;
-    fault.map_or(Ok(()), Err)
+    Ok(())
 }
 
 fn is_empty(line: &[u8]) -> bool {
@@ -120,21 +105,17 @@ fn end_of(text: &[u8], count: usize) -> Result<usize, ReadError> {
 }
 
 impl Part {
-    /// Reads a block of lines up to the first error. Its first element has the index `first`.
-    fn read(block: &[u8], first: usize, section: &Section, budget: &MemoryBudget) -> Self {
-        let (mut part, mut index) = (Self::default(), first);
-        for line in blocks::lines(block) {
-            part.lines += 1;
-            if section.kind == Kind::Other || is_empty(line) {
-                continue;
+    /// Reads a block of lines up to the first error. Its first element has this index.
+    fn read(block: &[u8], mut index: usize, section: &Section, budget: &MemoryBudget) -> (Self, Lines) {
+        let mut part = Self::default();
+        let lines = blocks::each_line(block, |_, line| {
+            if section.kind != Kind::Other && !is_empty(line) {
+                part.element(&mut words(line), index, section, budget)?;
+                index += 1;
             }
-            if let Err(message) = part.element(&mut words(line), index, section, budget) {
-                part.fault = Some((part.lines, message));
-                break;
-            }
-            index += 1;
-        }
-        part
+            Ok(())
+        });
+        (part, lines)
     }
 
     fn element(
@@ -152,15 +133,21 @@ impl Part {
         }
         match section.kind {
             Kind::Vertex if coordinates(&vertex).is_finite() => {
-                section.put(&vertex, &mut self.vertices, &mut self.attributes);
+                section.put(&vertex, &mut self.model.vertices, &mut self.model.attributes);
             }
             Kind::Vertex => {
                 let wrong = blocks::words(text()).find_map(|word| coordinate(word).err());
                 return Err(wrong.unwrap_or_else(|| format!("vertex {index} is not finite")));
             }
             Kind::Face | Kind::Strips => {
-                budget.holds(section.vertices, self.faces.len() + self.given.len())?;
-                section.add(index, &self.given, &mut self.corners, &mut self.faces, &mut self.polygons)?;
+                budget.holds(section.vertices, self.model.faces.len() + self.given.len())?;
+                section.add(
+                    index,
+                    &self.given,
+                    &mut self.corners,
+                    &mut self.model.faces,
+                    &mut self.polygons,
+                )?;
             }
             Kind::Other => {}
         }

@@ -1,6 +1,6 @@
 //! STL, as text and as bytes.
 
-use super::blocks::{self, Words, never, words};
+use super::blocks::{self, Lines, Words, never, words};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, Remark, coordinate, shown};
 use crate::parallel;
 use crate::text;
@@ -128,38 +128,31 @@ impl Keyword {
 #[derive(Default)]
 struct Part {
     vertices: Vec<DVec3>,
-    lines: usize,
     /// The line of the first `endloop`, and the number of vertices before it.
     first: Option<(usize, usize)>,
     /// The number of vertices before the last `endloop`.
     last: usize,
     /// Whether the block ends within a facet, if a facet begins or ends in it.
     is_in_facet: Option<bool>,
-    /// The first error except that of the first `endloop`, with its line.
-    fault: Option<(usize, String)>,
 }
 
 fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     let mut vertices = Vec::new();
     // The number of corners before the current facet.
-    let (mut start, mut line, mut is_in_facet) = (0, 0, false);
-    let take = |part: Part| {
+    let (mut start, mut is_in_facet) = (0, false);
+    let take = |part: Part, line| {
         if let Some((number, count)) = part.first {
             three(vertices.len() - start + count)
                 .map_err(|message| ReadError::line(line + number, message))?;
             start = vertices.len() + part.last;
         }
-        if let Some((number, message)) = part.fault {
-            return Err(ReadError::line(line + number, message));
-        }
         let count = vertices.len() + part.vertices.len();
         budget.holds(count, count / 3).map_err(ReadError::file)?;
         vertices.extend(part.vertices);
-        line += part.lines;
         is_in_facet = part.is_in_facet.unwrap_or(is_in_facet);
         Ok(())
     };
-    blocks::read(bytes, never, |_| 0, |block, _| Part::read(block, budget), take)?;
+    blocks::read(bytes, &mut 0, never, |_| 0, |block, _| Part::read(block, budget), take)?;
     if is_in_facet || vertices.len() != start {
         return Err(ReadError::line(blocks::line_ends(bytes) + 1, "the file ends within a facet"));
     }
@@ -174,20 +167,14 @@ fn three(count: usize) -> Result<(), String> {
 
 impl Part {
     /// Reads a block up to the first error.
-    fn read(block: &[u8], budget: &MemoryBudget) -> Self {
+    fn read(block: &[u8], budget: &MemoryBudget) -> (Self, Lines) {
         let mut part = Self::default();
-        for line in blocks::lines(block) {
-            part.lines += 1;
-            if let Err(message) = part.line(line, budget) {
-                part.fault = Some((part.lines, message));
-                break;
-            }
-        }
-        part
+        let lines = blocks::each_line(block, |number, line| part.line(number, line, budget));
+        (part, lines)
     }
 
     /// Reads a line, which may have several keywords. Unused words after a keyword are skipped.
-    fn line(&mut self, line: &[u8], budget: &MemoryBudget) -> Result<(), String> {
+    fn line(&mut self, number: usize, line: &[u8], budget: &MemoryBudget) -> Result<(), String> {
         let mut words = words(line);
         let Some(first) = words.next() else { return Ok(()) };
         let mut keyword = Keyword::of(first, &mut words);
@@ -207,7 +194,7 @@ impl Part {
                 Keyword::EndLoop => {
                     let count = self.vertices.len() - self.last;
                     match self.first {
-                        None => self.first = Some((self.lines, count)),
+                        None => self.first = Some((number, count)),
                         Some(_) => three(count)?,
                     }
                     self.last = self.vertices.len();
