@@ -9,6 +9,8 @@ pub struct Code {
     pub entity: &'static str,
     /// The lines after the code.
     pub lines: &'static [Line],
+    /// How it is drawn otherwise than by the programs of the time: as if it had no file.
+    pub drawn: Option<&'static str>,
 }
 
 /// A line, or several, after a code.
@@ -74,7 +76,12 @@ const ROUND: &[Line] = &[Line::Material, BASE, AXIS, RADIUS_AND_HEIGHT];
 const BALL: &[Line] = &[Line::Material, CENTRE, RADIUS];
 
 const fn code(number: u32, name: &'static str, entity: &'static str, lines: &'static [Line]) -> Code {
-    Code { number, name, entity, lines }
+    Code { number, name, entity, lines, drawn: None }
+}
+
+/// The meaning of a code that is drawn as a plain sphere.
+const fn plain(number: u32, name: &'static str, lines: &'static [Line], drawn: &'static str) -> Code {
+    Code { number, name, entity: "sphere", lines, drawn: Some(drawn) }
 }
 
 /// The codes with a single meaning.
@@ -119,12 +126,14 @@ const CODES: [Code; 15] = [
     code(22, "cylinder", "cylinder", ROUND),
     code(23, "cone", "revsurf", ROUND),
     code(26, "textured sphere", "sphere", &[Line::Material, CENTRE, RADIUS, Line::File]),
-    code(28, "displaced sphere", "sphere", &[Line::Material, CENTRE, RADIUS, Line::File]),
-    code(25, LENS, "sphere", BALL),
+    plain(
+        28,
+        "displaced sphere",
+        &[Line::Material, CENTRE, RADIUS, Line::File],
+        "a displaced sphere is drawn as a plain one",
+    ),
+    plain(25, "lens", BALL, "a lens is drawn as a sphere"),
 ];
-
-/// The name of a lens in messages.
-pub const LENS: &str = "lens";
 
 const TORUS: Code = code(
     25,

@@ -1,6 +1,6 @@
 //! The content of a scene of numbers, as entities of the scene language.
 
-use super::codes::{LENS, Numbers, Rule};
+use super::codes::{Numbers, Rule};
 use super::found::{Found, Given};
 use super::rows::Number;
 use super::unmapped::Unmapped;
@@ -125,7 +125,7 @@ impl<'a, 'r> Entities<'a, 'r> {
         if let [first, second] = transparencies[..]
             && first.values[0].value != second.values[0].value
         {
-            unmapped.transparent_tiles(second.place());
+            unmapped.add("all tiles of a plane are as transparent as the first", second.place());
         }
         let texture = self.texture(&found, report);
         let shader = self.shader(&found, texture.as_deref(), unmapped, report);
@@ -166,10 +166,8 @@ impl<'a, 'r> Entities<'a, 'r> {
             object.word("shader", shader, &found.place);
         }
         self.statements.push(object.done(end));
-        match found.code.name {
-            LENS => unmapped.lens(found.place),
-            "displaced sphere" => unmapped.displacement(found.place),
-            _ => {}
+        if let Some(drawn) = found.code.drawn {
+            unmapped.add(drawn, found.place);
         }
     }
 
@@ -190,7 +188,8 @@ impl<'a, 'r> Entities<'a, 'r> {
                 "transparency" if first.value == 0.0 => {}
                 name => {
                     if name == "transparency" {
-                        unmapped.transparency(line.place());
+                        let what = "what is transparent tints what is behind it, by its diffuse colour";
+                        unmapped.add(what, line.place());
                     }
                     material.numbers(line.line.attribute, &self.values(line), &places(&line.values));
                 }
@@ -203,7 +202,7 @@ impl<'a, 'r> Entities<'a, 'r> {
 
     /// Adds the texture of the file that an object names, if it is used and the file exists.
     fn texture(&mut self, found: &Found<'_>, report: &mut Report<'_>) -> Option<String> {
-        let (file, place) = found.file.as_ref().filter(|_| found.code.name != "displaced sphere")?;
+        let (file, place) = found.file.as_ref().filter(|_| found.code.drawn.is_none())?;
         let path = self.folder.join(file);
         if !path.is_file() {
             let message =

@@ -94,28 +94,26 @@ pub fn unlike_a_number(row: &Row<'_>, value: &Number) -> Option<Fault> {
 
 /// Reports numbers that break their rule.
 pub fn against_rule(line: &Numbers, values: &[Number], context: &Context) -> Option<Fault> {
-    let is_bad = |value: &Number| match line.rule {
-        Rule::Any | Rule::Direction => false,
-        Rule::Point => line.name == VIEWPOINT.name && value.place == values[2].place && value.value == 0.0,
-        Rule::Lengths => value.value <= 0.0,
-        Rule::Fraction => !(0.0..=1.0).contains(&value.value),
-        Rule::Angle => !(value.value > 0.0 && value.value <= 180.0),
-        Rule::Mode => ![1.0, 2.0].contains(&value.value),
-    };
-    let must = match line.rule {
-        Rule::Point => "off the screen: its z must not be 0",
-        Rule::Lengths => "positive",
-        Rule::Fraction => "from 0, opaque, to 1",
-        Rule::Angle => "above 0 and at most 180 degrees",
-        Rule::Mode => "1, which fits the texture, or 2, which tiles it",
-        Rule::Any | Rule::Direction => "",
+    let (must, is_bad): (_, fn(f64) -> bool) = match line.rule {
+        Rule::Point if line.name == VIEWPOINT.name => {
+            ("off the screen: its z must not be 0", |value| value == 0.0)
+        }
+        Rule::Any | Rule::Direction | Rule::Point => ("", |_| false),
+        Rule::Lengths => ("positive", |value| value <= 0.0),
+        Rule::Fraction => ("from 0, opaque, to 1", |value| !(0.0..=1.0).contains(&value)),
+        Rule::Angle => ("above 0 and at most 180 degrees", |value| !(value > 0.0 && value <= 180.0)),
+        Rule::Mode => {
+            ("1, which fits the texture, or 2, which tiles it", |value| ![1.0, 2.0].contains(&value))
+        }
     };
     let Numbers { name, count, .. } = line;
     if line.rule == Rule::Direction && values.iter().all(|value| value.value == 0.0) {
         let place = values.first()?.place.start..values.last()?.place.end;
         return Some(context.fault(place, format!("the {name} of this {} must not be 0 0 0", context.name)));
     }
-    let at = values.iter().position(is_bad)?;
+    // Of a point, only the last number counts.
+    let first = if line.rule == Rule::Point { values.len() - 1 } else { 0 };
+    let at = first + values[first..].iter().position(|value| is_bad(value.value))?;
     let value = &values[at];
     let message = match line.rule {
         Rule::Point => format!("the {name} of this {} must be {must}", context.name),

@@ -13,7 +13,9 @@ const MAX_LISTED: usize = 12;
 pub struct Unmapped(Vec<(String, Range<usize>, usize)>);
 
 impl Unmapped {
-    fn add(&mut self, what: String, place: Range<usize>) {
+    /// Notes a difference at a place.
+    pub fn add(&mut self, what: impl Into<String>, place: Range<usize>) {
+        let what = what.into();
         if let Some((.., count)) = self.0.iter_mut().find(|(known, ..)| *known == what) {
             *count += 1;
         } else if self.0.len() < MAX_LISTED {
@@ -32,32 +34,12 @@ impl Unmapped {
         self.add(what, number.place.clone());
     }
 
-    /// Notes a transparency above 0.
-    pub fn transparency(&mut self, place: Range<usize>) {
-        self.add("what is transparent tints what is behind it, by its diffuse colour".to_owned(), place);
-    }
-
-    /// Notes a different transparency of alternate tiles.
-    pub fn transparent_tiles(&mut self, place: Range<usize>) {
-        self.add("all tiles of a plane are as transparent as the first".to_owned(), place);
-    }
-
     /// Notes an index of refraction.
     pub fn index(&mut self, index: &Number) {
         if index.value != 0.0 {
             let what = "an index of refraction bends no light here; a `glass` does, in a scene of words";
-            self.add(what.to_owned(), index.place.clone());
+            self.add(what, index.place.clone());
         }
-    }
-
-    /// Notes a lens.
-    pub fn lens(&mut self, place: Range<usize>) {
-        self.add("a lens is drawn as a sphere".to_owned(), place);
-    }
-
-    /// Notes a displaced sphere.
-    pub fn displacement(&mut self, place: Range<usize>) {
-        self.add("a displaced sphere is drawn as a plain one".to_owned(), place);
     }
 
     /// Returns the note, if there are differences.
