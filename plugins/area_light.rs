@@ -7,9 +7,10 @@ use tabray::exact::double_double::scaled;
 use tabray::prelude::*;
 use tabray::shapes::outline;
 
-static TARGET: Pparm<DVec3> = Pparm::required("target", "a point that it faces, from its middle")
-    .known_as(&["look_at", "point_at", "to"])
-    .unit("world coordinates");
+static TARGET: Pparm<DVec3> =
+    Pparm::required("target", "a point that one of its sides faces, from its middle")
+        .known_as(&["look_at", "point_at", "to"])
+        .unit("world coordinates");
 static DIMENSIONS: Pparm<Option<DVec2>> =
     Pparm::or("dimensions", "the width and height of a rectangle", None)
         .each(&["width", "height"])

@@ -14,7 +14,7 @@ static TUBE: Pparm<f64> = Pparm::required("tube", "the radius of the tube").unit
 const TABLE: Table = &[&CENTER, &DIRECTION, &RADIUS, &TUBE];
 
 inventory::submit! {
-    Entity::shape("torus", "a torus", &[TABLE], |args| {
+    Entity::shape("torus", "a torus; with a tube thicker than its radius, only its outer sheet", &[TABLE], |args| {
         let torus = Torus { radius: args.get(&RADIUS), tube: args.get(&TUBE) };
         Ok(Body::implicit(torus, Frame::around(args.get(&CENTER), args.get(&DIRECTION))))
     })
