@@ -4,6 +4,7 @@ use crate::common::model;
 use crate::oracle::rays::Random;
 use glam::DVec3;
 use tabray::geometry::{MISS, Ray, RayRange};
+use tabray::query::{ExactRay, Query, Verdict};
 use tabray::scene::Model;
 
 /// Half the length of an edge of the box.
@@ -182,4 +183,51 @@ fn a_pole_is_no_surface() {
 #[test]
 fn a_slope_without_bounds_is_no_hindrance() {
     agrees("cbrt(x) - y", |ray| by_steps(|t| ray.at(t).x - ray.at(t).y.powi(3)));
+}
+
+/// The surface is where the formula is defined, as it was written: clearing a denominator adds nothing to it.
+#[test]
+fn a_root_where_the_formula_is_not_defined_is_no_hit() {
+    use Verdict::{Hit, Miss, Undecided};
+    let pole = "z/y + 0.1";
+    for (formula, origin, dir, expected) in [
+        // In the plane y = 0, the formula is nowhere defined.
+        (pole, [-0.5, 0.0, -3.0], [0.0, 0.0, 1.0], Miss),
+        // Here, z/y is 1, except for 0/0.
+        (pole, [-3.0, 2.0, 2.0], [4.0, -2.0, -2.0], Miss),
+        (pole, [-0.5, 1.0, -3.0], [0.0, 0.0, 1.0], Hit),
+        ("(z + 0.1*y)^3/y", [-3.0, 2.0, 2.0], [4.0, -2.0, -2.0], Miss),
+        ("1/(1/x + 1/y) - 1", [0.0, 0.0, -3.0], [0.0, 0.0, 1.0], Miss),
+        ("1/(1/x + 1/y) - 1", [-6.0, -3.0, 0.5], [2.0, 1.0, 0.0], Miss),
+        ("1/(1/x + 1/y) - 1", [1.5, -3.0, 0.5], [0.0, 2.0, 0.0], Miss),
+        ("1/(1/x + 1/y) - 0.5", [1.5, -3.0, 0.5], [0.0, 2.0, 0.0], Hit),
+        ("ln(y/z) - 0.2", [-3.0, 1.0, 0.0], [1.0, 0.0, 0.0], Miss),
+        ("x^-2*(y - x) + z", [0.0, 0.5, -3.0], [0.0, 0.0, 1.0], Miss),
+        ("z/y + x", [-3.0, -3.0, 0.0], [1.0, 1.0, 0.0], Undecided),
+        ("acos(y/z) - 2", [0.0, -0.5, 3.0], [0.0, 0.0, -1.0], Hit),
+    ] {
+        let model = surface(formula);
+        let ray = ExactRay::new(origin.into(), dir.into()).expect("a ray");
+        for is_tight in [false, true] {
+            let [answer] = Query::new(&model).proven(std::slice::from_ref(&ray), is_tight)[..] else {
+                panic!("one answer")
+            };
+            assert_eq!(answer.verdict, expected, "{formula} from {origin:?} along {dir:?}: {answer:?}");
+        }
+        let [traced] = Query::new(&model).traced(&[ray])[..] else { panic!("one answer") };
+        assert!(traced.verdict == expected || expected == Undecided, "{formula} from {origin:?} along {dir:?}");
+    }
+}
+
+#[test]
+fn an_arc_cosine_of_a_quotient_is_seen_on_both_sides_of_its_pole() {
+    let model = surface("acos(y/z) - 2");
+    let cos = libm::cos(2.0);
+    for step in 1..40 {
+        let z = 0.05 * f64::from(step) - 1.025;
+        let ray = ExactRay::new(DVec3::new(0.3, cos * z, 3.0), DVec3::NEG_Z).expect("a ray");
+        let [answer] = Query::new(&model).proven(&[ray], false)[..] else { panic!("one answer") };
+        assert_eq!(answer.verdict, Verdict::Hit, "{z}");
+        assert!((answer.t - (3.0 - z)).abs() < 1e-12, "{} is not {}", answer.t, 3.0 - z);
+    }
 }

@@ -146,7 +146,7 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
         for _ in 0..MOST_CUT {
             let root = method.first_root(&line, outer.clone(), line.closest, &left, shortest(&outer));
             match root {
-                Some(root) if self.formula.is_cut() && !line.kept(root).is_kept => {
+                Some(root) if self.has_gaps() && !line.kept(root).is_kept => {
                     // Another method may find the same root again, unless the origin's side tells it that the line
                     // leaves the surface there.
                     let rises = taylor::FunctionOnLine::at(&line, Dual::variable(root)).slope > 0.0;

@@ -33,8 +33,14 @@ pub type CurveField = FieldOf<{ CURVE.len() }>;
 /// A formula in the variables of [`SPACE`], [`PATCH`], [`CURVE`] or [`SURFACE`], depending on their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldOf<const N: usize> {
-    /// The formula as read.
+    /// The formula.
     formula: Arc<Formula>,
+    /// The formula as read, from which this one may have been simplified.
+    written: Arc<Formula>,
+    /// Whether the formula as read has divisors that may be 0.
+    divides: bool,
+    /// What is 0 where a divisor of the formula as read is 0, if this one was cleared of its denominators.
+    poles: Option<Arc<Self>>,
     /// The same formula with fewer operations.
     quick: Formula,
     /// The operations with products for powers, for polynomials along lines.
@@ -69,7 +75,30 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         if let Some(program) = of_space(Products::OfSquares) {
             quick.program = program;
         }
-        Some(Self { formula, quick, products, cells: None })
+        let (written, divides) = (formula.clone(), divides(&formula.steps));
+        Some(Self { formula, written, divides, poles: None, quick, products, cells: None })
+    }
+
+    /// Returns a simpler field in place of this one. `poles` is 0 where a divisor is 0, if the field has no more
+    /// divisors.
+    pub(super) fn simplified(&self, to: Self, poles: Option<Self>) -> Self {
+        let poles = poles.map(Arc::new).or_else(|| self.poles.clone());
+        Self { written: self.written.clone(), divides: self.divides, poles, ..to }
+    }
+
+    /// Returns the formula as read.
+    pub(super) fn as_written(&self) -> &Formula {
+        &self.written
+    }
+
+    /// Tells whether the formula as read has divisors that may be 0.
+    pub fn divides(&self) -> bool {
+        self.divides
+    }
+
+    /// Returns what is 0 where a divisor of the formula as read is 0, if this one was cleared of its denominators.
+    pub fn poles(&self) -> Option<&Self> {
+        self.poles.as_deref()
     }
 
     /// Tells whether the formula uses the variable with this index.
@@ -149,6 +178,23 @@ impl Field {
         let cell = self.cells().and_then(|cells| cells.program(bounds_of(at)));
         cell.unwrap_or(self.program()).instructions.iter().map(|of| of.step.cost()).sum()
     }
+}
+
+/// Tells whether operations divide by anything but numbers.
+fn divides(steps: &[Step]) -> bool {
+    // For each value, whether it depends on variables.
+    let mut waiting: Vec<bool> = Vec::new();
+    steps.iter().any(|step| {
+        let operands = waiting.split_off(waiting.len().saturating_sub(step.operands()));
+        let varies = operands.contains(&true);
+        waiting.push(varies || matches!(step, Step::Variable(_)));
+        let divisor = match step {
+            Step::Div | Step::Call(Function::Smin | Function::Smax) => operands.last(),
+            Step::Powi(..0) => operands.first(),
+            _ => None,
+        };
+        divisor == Some(&true)
+    })
 }
 
 /// A square root that is 0 for a negative number.

@@ -18,6 +18,7 @@ mod spline;
 mod step;
 pub mod variables;
 mod words;
+pub mod written;
 
 pub use function::functions;
 pub use own::{OwnFunction, head};

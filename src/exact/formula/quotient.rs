@@ -29,7 +29,8 @@ impl Field {
         if !steps.contains(&Step::Div) && !steps.iter().any(|step| matches!(step, Step::Powi(..0))) {
             return None;
         }
-        let Quotient { above, below } = Quotient::of(steps)?;
+        let mut divisors = Vec::new();
+        let Quotient { above, below } = Quotient::of(steps, &mut divisors)?;
         if below.is_empty() {
             return None;
         }
@@ -43,13 +44,28 @@ impl Field {
         }
         let product = with(product)?;
         let is_reduced = product.is_polynomial() && !product.has_repeated_factor();
-        if is_reduced { Some([with(above)?, with(denominator)?]) } else { None }
+        if !is_reduced {
+            return None;
+        }
+        let poles = divisors.into_iter().reduce(|mut product, factor| {
+            times(&mut product, &factor);
+            product
+        });
+        let poles = poles.and_then(with);
+        Some([self.simplified(with(above)?, poles), with(denominator)?])
     }
 }
 
 impl Quotient {
     /// Splits operations into a quotient, or returns `None` if one of them cannot occur in a quotient of polynomials.
-    fn of(steps: &[Step]) -> Option<Self> {
+    /// Adds the numerators of all divisors.
+    fn of(steps: &[Step], divisors: &mut Vec<Vec<Step>>) -> Option<Self> {
+        let mut divides_by = |of: &Self| {
+            if of.above.iter().any(|step| matches!(step, Step::Variable(_))) && !divisors.contains(&of.above)
+            {
+                divisors.push(of.above.clone());
+            }
+        };
         let mut waiting: Vec<Self> = Vec::new();
         for step in steps {
             let second = if step.operands() == 2 { waiting.pop() } else { None };
@@ -60,8 +76,12 @@ impl Quotient {
                 Step::Shift(number) => first = first.plus(Self::number(*number), Step::Add),
                 Step::Add | Step::Sub => first = first.plus(second, *step),
                 Step::Mul => first = first.times(second),
-                Step::Div => first = first.times(second.inverse()?),
+                Step::Div => {
+                    divides_by(&second);
+                    first = first.times(second.inverse()?);
+                }
                 Step::Powi(exponent) if *exponent < 0 => {
+                    divides_by(&first);
                     first = first.inverse()?.power(exponent.checked_neg()?)?;
                 }
                 Step::Powi(exponent) => first = first.power(*exponent)?,

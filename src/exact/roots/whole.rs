@@ -73,6 +73,22 @@ impl Whole {
         })
     }
 
+    /// Tells whether a root of this polynomial is also one of another.
+    pub fn shares(&self, root: &Root, other: &Self) -> bool {
+        if other.is_zero() {
+            return true;
+        }
+        let (one, other) = (self.primitive(), other.primitive());
+        let (one, other) = if one.degree() < other.degree() { (other, one) } else { (one, other) };
+        if other.degree() == 0 {
+            return false;
+        }
+        // All roots of the divisor are roots of this polynomial, and so only this one can be between the bounds.
+        let shared = one.divisor(other).without_repeated_factors();
+        let [before, after] = root.bounds.each_ref().map(|place| shared.sign_at(place));
+        before * after <= 0 && shared.degree() > 0
+    }
+
     fn is_root(&self, root: &Root) -> bool {
         self.sign_at(&root.bounds[0]) == 0
     }
@@ -258,6 +274,21 @@ mod tests {
         assert_eq!(first(&product(&[(8, 3), (8, 3)], &[]), 0.0, 1.0), Some((0.375, None)));
         assert_eq!(first(&Whole::new(vec![IBig::ZERO]), 0.0, 1.0), None);
         assert_eq!(first(&Whole::new(vec![IBig::from(3)]), 0.0, 1.0), None);
+    }
+
+    #[test]
+    fn a_root_that_two_polynomials_share_is_told() {
+        let of = product(&[(3, 1), (7, 5), (7, 5)], &[&[5, 0, 1]]);
+        let all = [0.0, 0.5].map(|from| of.first_root(from, 1.0, |_| true).expect("a root"));
+        for (other, expected) in [
+            (product(&[(7, 5), (1, -3)], &[]), [false, true]),
+            (product(&[(3, 1), (3, 1), (3, 1), (7, 5), (9, 1)], &[&[1, 1, 1]]), [true, true]),
+            (product(&[(7, 4), (1, 0)], &[&[5, 0, 1]]), [false; 2]),
+            (product(&[], &[&[2]]), [false; 2]),
+            (product(&[], &[&[0]]), [true; 2]),
+        ] {
+            assert_eq!(all.each_ref().map(|root| of.shares(root, &other)), expected, "{other:?}");
+        }
     }
 
     #[test]

@@ -41,6 +41,22 @@ pub(super) struct ImplicitShape<T> {
     pub nodes: Option<Nodes>,
 }
 
+impl<T: Implicit> ImplicitShape<T> {
+    /// Tells whether a root may be no hit, because the surface is cut off there or its formula is not defined.
+    pub fn has_gaps(&self) -> bool {
+        self.formula.is_cut() || self.formula.field().is_some_and(Field::divides)
+    }
+
+    /// Tells whether no divisor of the formula, as it was written, is 0 at the points of a box, or one is 0 at all of
+    /// them; `None` if that is uncertain.
+    fn is_defined(&self, at: [Interval; 3]) -> Option<bool> {
+        match self.formula.field().filter(|field| field.divides()) {
+            Some(field) => field.written().at(&at).is_defined,
+            None => Some(true),
+        }
+    }
+}
+
 /// Whether a surface is kept at a root, and whether that is certain in `f64`.
 pub(super) struct Kept {
     pub is_kept: bool,
@@ -101,8 +117,10 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         };
         // The function does not cross 0 before the root, and so has the same sign there as at the start.
         let is_first = if rises { start.high < 0.0 } else { start.low > 0.0 };
-        let is_kept = !self.shape.formula.is_cut()
-            || self.shape.formula.inside_trim(self.on_line(Interval { low, high })).low >= 0.0;
+        let is_kept = !self.shape.has_gaps() || {
+            let at = self.on_line(Interval { low, high });
+            self.shape.formula.inside_trim(at).low >= 0.0 && self.shape.is_defined(at) == Some(true)
+        };
         if is_first && is_kept {
             let near = (self.closest + low - rounding).max(0.0);
             Bracket { near, far: self.closest + high + rounding }
@@ -143,7 +161,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     pub fn first_hit(&self, range: &RayRange) -> FirstRoot {
         let stretch = self.stretch();
         let pieces = if self.is_lost(1.0) { FEW_PIECES } else { taylor::MAX_PIECES };
-        if !self.shape.formula.is_cut() {
+        if !self.shape.has_gaps() {
             return self.first_root(&stretch, range, pieces);
         }
         let (mut range, mut all_certain) = (*range, true);
@@ -159,11 +177,16 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         }
     }
 
-    /// Tells whether the surface is kept at a root. If `f64` does not decide this, the root is refined in double-double
-    /// arithmetic.
+    /// Tells whether the surface is kept at a root, and its formula defined. If `f64` does not decide whether it is cut
+    /// off, the root is refined in double-double arithmetic.
     pub fn kept(&self, root: f64) -> Kept {
         let error = 4.0 * f64::EPSILON * root.abs() + self.blur;
         let at = self.on_line(Interval { low: root - error, high: root + error });
+        if self.shape.is_defined(at) != Some(true) {
+            // Only a divisor that is exactly 0, as along a ray in a plane of poles, leaves out what seems to be a root.
+            let point = (self.base + root * self.dir).to_array().map(Interval::constant);
+            return Kept { is_kept: self.shape.is_defined(point) != Some(false), is_certain: false };
+        }
         let kept = self.shape.formula.inside_trim(at);
         if kept.low >= 0.0 || kept.high < 0.0 {
             return Kept { is_kept: kept.low >= 0.0, is_certain: true };

@@ -1,13 +1,14 @@
 //! First hits of a surface whose equation is a polynomial, found from its coefficients along the line, rounded or
 //! exact.
 
-use super::equation::{Equation, HitEnclosure, Values, is_kept};
+use super::equation::{Equation, HitEnclosure, Values, hit_at, is_kept, may_be_hit};
 use crate::geometry::sight::{Line, Sight};
 use f256::f256;
 use tabray_exact::formula::rational::Rational;
 use tabray_exact::interval::{Fine, Float, Interval, Wide};
 use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
 use tabray_exact::roots::isolation::{self, RootPart};
+use tabray_exact::roots::whole::Root;
 use tabray_exact::scalar::per_axis;
 
 /// An equation that may be a polynomial with coefficients of one type.
@@ -101,16 +102,12 @@ fn visit_hits<C: Coefficient>(
             if distance.low <= zero {
                 return Some(HitEnclosure::Doubtful(zero));
             }
-            match is_kept(shape, &near, at) {
-                Some(true) => Some(HitEnclosure::Hits(distance)),
-                Some(false) => None,
-                None => Some(HitEnclosure::Edge(distance)),
-            }
+            hit_at(shape, &near, at, distance)
         }
         RootPart::Hidden(ends) => {
             let at = interval(ends);
             // A root that is certainly cut off is no hit.
-            let is_open = is_kept(shape, &near, at) != Some(false) && (base + at).high > zero;
+            let is_open = may_be_hit(shape, &near, at) && (base + at).high > zero;
             is_open.then(|| HitEnclosure::Doubtful((base + at).low.max(zero)))
         }
     };
@@ -125,6 +122,10 @@ pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclo
     let line = shape.to_local(sight.line::<Fine>());
     let [origin, dir] = exact_line(&line)?;
     let polynomial = field.exactly_along(&origin, &dir)?;
+    let poles = match field.poles() {
+        Some(poles) => Some(poles.exactly_along(&origin, &dir)?),
+        None => None,
+    };
     let near = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
     let [low, high] = shape.extent();
     let Some((from, to)) = near.clip(low, high) else { return Some(HitEnclosure::Misses) };
@@ -136,7 +137,9 @@ pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclo
         let kept = (at.high > f256::ZERO).then(|| is_kept(shape, &near, at));
         kept.unwrap_or(Some(false))
     };
-    let root = polynomial.first_root(from, to, |root| is_hit(root.wide()) != Some(false));
+    let is_pole = |root: &Root| poles.as_ref().is_some_and(|poles| polynomial.shares(root, poles));
+    let is_wanted = |root: &Root| is_hit(root.wide()) != Some(false) && !is_pole(root);
+    let root = polynomial.first_root(from, to, is_wanted);
     Some(match root.map(|root| root.wide()) {
         None => HitEnclosure::Misses,
         Some(at) if is_hit(at).is_some() => HitEnclosure::Hits(at),

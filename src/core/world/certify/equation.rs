@@ -159,3 +159,42 @@ pub(super) fn is_kept<F: Float>(
         Some(false)
     }
 }
+
+/// Tells whether the formula of a surface, as it was written, is defined at all distances of an interval along a line;
+/// `None` where that is uncertain. Roots and logarithms of negative numbers are cut off by
+/// [`inside_trim`](Equation::inside_trim).
+fn is_defined<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    distance: Interval<F>,
+) -> Option<bool> {
+    match shape.field().filter(|field| field.divides()) {
+        Some(field) => field.written().at(&line.at(distance)).is_defined,
+        None => Some(true),
+    }
+}
+
+/// Tells whether there may be a hit at the distances of an interval along a line, where the value may be 0.
+pub(super) fn may_be_hit<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    distance: Interval<F>,
+) -> bool {
+    is_kept(shape, line, distance) != Some(false) && is_defined(shape, line, distance) != Some(false)
+}
+
+/// Returns what is certain about a hit at a root that exists at a place of a line, given its distance from the line's
+/// start; `None` if it is no hit.
+pub(super) fn hit_at<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    root: Interval<F>,
+    distance: Interval<F>,
+) -> Option<HitEnclosure<F>> {
+    match (is_kept(shape, line, root), is_defined(shape, line, root)) {
+        (Some(false), _) | (_, Some(false)) => None,
+        (Some(true), Some(true)) => Some(HitEnclosure::Hits(distance)),
+        (None, Some(true)) => Some(HitEnclosure::Edge(distance)),
+        (_, None) => Some(HitEnclosure::Doubtful(distance.low)),
+    }
+}

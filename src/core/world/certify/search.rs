@@ -1,6 +1,6 @@
 //! First hits of any surface, by splitting a line until each piece certainly has no root, or exactly one.
 
-use super::equation::{HitEnclosure, Values, is_kept};
+use super::equation::{HitEnclosure, Values, hit_at, may_be_hit};
 use crate::geometry::sight::Line;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
@@ -78,22 +78,20 @@ fn search_pieces<F: Float>(
                 if distance.low <= zero {
                     return HitEnclosure::Doubtful(zero);
                 }
-                match is_kept(shape, near, root) {
-                    Some(true) => return HitEnclosure::Hits(distance),
-                    Some(false) => {}
-                    None => return HitEnclosure::Edge(distance),
+                if let Some(hit) = hit_at(shape, near, root, distance) {
+                    return hit;
                 }
             }
             Judgement::Open if high - low > shortest => pending.extend(cut(low, high)),
             Judgement::Jump if high - low > shortest_jump => pending.extend(cut(low, high)),
             // A root that is certainly cut off is no hit.
             Judgement::Open | Judgement::Jump => {
-                if is_kept(shape, near, piece) != Some(false) {
+                if may_be_hit(shape, near, piece) {
                     return HitEnclosure::Doubtful(start());
                 }
             }
             Judgement::Touch(at) => {
-                if is_kept(shape, near, at) != Some(false) {
+                if may_be_hit(shape, near, at) {
                     return HitEnclosure::Doubtful((base + at).low.max(zero));
                 }
             }
@@ -192,7 +190,7 @@ impl<F: Float> Search<'_, F> {
     /// formula is not defined, or the formula jumps past 0.
     fn is_broken(&self, piece: Interval<F>) -> bool {
         let jumps = |field: &Field| field.jumps_past_0(self.line.at(piece));
-        self.shape.field().is_some_and(jumps) || is_kept(self.shape, self.line, piece) == Some(false)
+        self.shape.field().is_some_and(jumps) || !may_be_hit(self.shape, self.line, piece)
     }
 
     /// Judges a piece by the mean value theorem of first and then of second order.

@@ -1,0 +1,342 @@
+//! Formulas as they were written: the operations of the text, one by one, in plain intervals.
+//!
+//! This is a second opinion on proofs, which evaluate simplified formulas with derivatives in other number types. It
+//! shares nothing with them but the rounding of a [`Float`] and the noise: no step is left out, joined with another,
+//! or cleared of its denominators. It also tells where a formula is defined, which a simplified one does not.
+
+use super::field::FieldOf;
+use super::step::{Function, Step};
+use crate::interval::{Float, Interval};
+use crate::scalar::Scalar;
+
+/// What is known of a formula's values at the points of a box.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<F> {
+    /// Bounds of the values where the formula is defined.
+    pub low: F,
+    /// The upper bound.
+    pub high: F,
+    /// Whether the formula is defined at all of the points, or at none; `None` if that is uncertain.
+    pub is_defined: Option<bool>,
+    /// Whether the formula is certainly continuous, if it is defined at all of the points.
+    pub is_continuous: bool,
+}
+
+/// The evaluation of a formula as it was written.
+pub struct Written<'f, F> {
+    steps: &'f [Step],
+    waiting: Vec<Seen<F>>,
+}
+
+impl<const N: usize> FieldOf<N> {
+    /// Returns the evaluation of the formula as it was written.
+    pub fn written<F: Float>(&self) -> Written<'_, F> {
+        Written { steps: &self.as_written().steps, waiting: Vec::new() }
+    }
+}
+
+impl<F: Float> Written<'_, F> {
+    /// Evaluates the formula at the points of a box.
+    pub fn at(&mut self, at: &[Interval<F>]) -> Seen<F> {
+        let unknown = Seen { is_defined: None, ..Seen::whole() };
+        self.waiting.clear();
+        for step in self.steps {
+            let mut operand = || self.waiting.pop().unwrap_or(unknown);
+            let value = match step.operands() {
+                0 => match *step {
+                    Step::Variable(index) => {
+                        Seen::of(at[usize::from(index)].low, at[usize::from(index)].high)
+                    }
+                    Step::Number(number) => Seen::of(F::of(number), F::of(number)),
+                    _ => unknown,
+                },
+                1 => operand().one(*step),
+                2 => {
+                    let b = operand();
+                    operand().two(*step, b)
+                }
+                _ => {
+                    let (c, b) = (operand(), operand());
+                    operand().three(*step, b, c)
+                }
+            };
+            self.waiting.push(value);
+        }
+        self.waiting.pop().unwrap_or(unknown)
+    }
+}
+
+impl<F: Float> Seen<F> {
+    fn whole() -> Self {
+        Self::of(-F::INFINITY, F::INFINITY)
+    }
+
+    fn of(low: F, high: F) -> Self {
+        Self { low, high, is_defined: Some(true), is_continuous: true }
+    }
+
+    /// Returns whether the values have one sign, which is then that of a positive or a negative number.
+    pub fn sign(&self) -> Option<bool> {
+        let zero = F::of(0.0);
+        if self.low > zero || self.high < zero { Some(self.low > zero) } else { None }
+    }
+
+    fn has(&self, number: f64) -> bool {
+        self.low <= F::of(number) && self.high >= F::of(number)
+    }
+
+    fn is_bounded(&self) -> bool {
+        self.low.is_finite() && self.high.is_finite()
+    }
+
+    /// Widens bounds that were rounded. A sum is exact where it is 0.
+    fn rounded(low: F, high: F) -> Self {
+        let (low, high) = F::outward(low, high);
+        if low.is_nan() || high.is_nan() { Self::whole() } else { Self::of(low, high) }
+    }
+
+    fn sum(low: F, high: F) -> Self {
+        let (low, high) = F::outward_sum(low, high);
+        if low.is_nan() || high.is_nan() { Self::whole() } else { Self::of(low, high) }
+    }
+
+    /// Widens bounds that were computed by functions.
+    fn computed(low: F, high: F) -> Self {
+        let (low, high) = F::around(low, high);
+        let (low, high) = F::around(low, high);
+        if low.is_nan() || high.is_nan() { Self::whole() } else { Self::of(low, high) }
+    }
+
+    fn at_least(self, least: f64) -> Self {
+        Self { low: self.low.max(F::of(least)), high: self.high.max(F::of(least)), ..self }
+    }
+
+    /// Adds what is known of an operand.
+    fn with(self, operand: Self) -> Self {
+        let is_defined = match (self.is_defined, operand.is_defined) {
+            (Some(false), _) | (_, Some(false)) => Some(false),
+            (Some(true), Some(true)) => Some(true),
+            _ => None,
+        };
+        Self { is_defined, is_continuous: self.is_continuous && operand.is_continuous, ..self }
+    }
+
+    /// Demands a condition that holds at all of the points, or at none, or at some.
+    fn only_if(self, is_met: Option<bool>) -> Self {
+        self.with(Self { is_defined: is_met, ..self })
+    }
+
+    fn is_not_0(self) -> Option<bool> {
+        match self.has(0.0) {
+            false => Some(true),
+            true if self.low == self.high => Some(false),
+            true => None,
+        }
+    }
+
+    /// Tells whether the values are from 0 on; with `or_0`, 0 itself counts.
+    fn is_positive(self, or_0: bool) -> Option<bool> {
+        let zero = F::of(0.0);
+        if self.low > zero || or_0 && self.low >= zero {
+            Some(true)
+        } else if self.high < zero || !or_0 && self.high <= zero {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    fn negative(self) -> Self {
+        Self { low: -self.high, high: -self.low, ..self }
+    }
+
+    fn plus(self, b: Self) -> Self {
+        Self::sum(self.low + b.low, self.high + b.high).with(self).with(b)
+    }
+
+    fn times(self, b: Self) -> Self {
+        let zero = F::of(0.0);
+        // An unbounded operand has finite values, and so their products with 0 are 0.
+        let product = |one: F, other: F| if one == zero || other == zero { zero } else { one * other };
+        let ends = [(self.low, b.low), (self.low, b.high), (self.high, b.low), (self.high, b.high)];
+        let [first, rest @ ..] = ends.map(|(one, other)| product(one, other));
+        let low = rest.iter().fold(first, |low, of| if *of < low { *of } else { low });
+        let high = rest.iter().fold(first, |high, of| if *of > high { *of } else { high });
+        let is_0 = |of: Self| of.low == zero && of.high == zero;
+        let values = if is_0(self) || is_0(b) { Self::of(zero, zero) } else { Self::rounded(low, high) };
+        let values = if self.low >= zero && b.low >= zero { values.at_least(0.0) } else { values };
+        values.with(self).with(b)
+    }
+
+    fn over(self, b: Self) -> Self {
+        let values = if b.has(0.0) || !b.is_bounded() || !self.is_bounded() {
+            Self::whole()
+        } else {
+            let ends = [(self.low, b.low), (self.low, b.high), (self.high, b.low), (self.high, b.high)];
+            let [first, rest @ ..] = ends.map(|(one, other)| one / other);
+            let low = rest.iter().fold(first, |low, of| if *of < low { *of } else { low });
+            let high = rest.iter().fold(first, |high, of| if *of > high { *of } else { high });
+            Self::rounded(low, high)
+        };
+        values.with(self).with(b).only_if(b.is_not_0())
+    }
+
+    fn squared(self) -> Self {
+        let size = self.absolute();
+        size.times(size)
+    }
+
+    fn power(self, exponent: u32) -> Self {
+        match exponent {
+            0 => Self::of(F::of(1.0), F::of(1.0)).with(self),
+            1 => self,
+            _ if exponent.is_multiple_of(2) => self.power(exponent / 2).squared(),
+            _ => self.power(exponent / 2).squared().times(self),
+        }
+    }
+
+    fn absolute(self) -> Self {
+        let (below, above) = (-self.low, self.high);
+        let high = if below > above { below } else { above };
+        let low = if self.low > F::of(0.0) {
+            self.low
+        } else if self.high < F::of(0.0) {
+            -self.high
+        } else {
+            F::of(0.0)
+        };
+        Self { low, high, ..self }
+    }
+
+    /// Returns the hull of a choice between two values.
+    fn either(self, b: Self) -> Self {
+        let is_defined = if self.is_defined == b.is_defined { self.is_defined } else { None };
+        Self { low: self.low.min(b.low), high: self.high.max(b.high), is_defined, is_continuous: false }
+    }
+
+    /// Returns the sine or the cosine. Their slopes are at most 1.
+    fn wave(self, of: impl Fn([F; 2]) -> [F; 2]) -> Self {
+        let (one, half) = (F::of(1.0), F::of(0.5) * (self.high - self.low));
+        let middle = self.low + half;
+        let known = Self::computed(of([middle; 2])[0], of([middle; 2])[0]);
+        // The middle is rounded.
+        let reach = half + F::of(4.0) * F::EPSILON * (self.low.abs() + self.high.abs());
+        let near = Self::sum(known.low - reach, known.high + reach);
+        let is_near = reach < one;
+        let values = if is_near { near } else { Self::of(-one, one) };
+        Self { low: values.low.max(-one), high: values.high.min(one), ..values }.with(self)
+    }
+
+    fn one(self, step: Step) -> Self {
+        let (zero, one) = (F::of(0.0), F::of(1.0));
+        let number = |of: f64| Self::of(F::of(of), F::of(of));
+        match step {
+            Step::Neg => self.negative(),
+            Step::Scale(factor) => self.times(number(factor)),
+            Step::Shift(by) => self.plus(number(by)),
+            Step::Powi(exponent) if exponent < 0 => number(1.0).over(self.power(exponent.unsigned_abs())),
+            Step::Powi(exponent) => self.power(exponent.unsigned_abs()),
+            Step::Call(Function::Sin) => self.wave(|angles| F::sines(angles).0),
+            Step::Call(Function::Cos) => self.wave(|angles| F::sines(angles).1),
+            Step::Call(Function::Tan) => {
+                self.wave(|angles| F::sines(angles).0).over(self.wave(|angles| F::sines(angles).1))
+            }
+            Step::Call(Function::Exp) => {
+                Self::computed(self.low.exp(), self.high.exp()).at_least(0.0).with(self)
+            }
+            Step::Call(Function::Ln) => {
+                let within = self.at_least(0.0);
+                let values = Self::computed(within.low.ln(), within.high.ln());
+                let low = if within.low == zero { -F::INFINITY } else { values.low };
+                Self { low, ..values }.with(self).only_if(self.is_positive(false))
+            }
+            Step::Call(Function::Sqrt) => {
+                let within = self.at_least(0.0);
+                let values = Self::rounded(within.low.sqrt(), within.high.sqrt()).at_least(0.0);
+                values.with(self).only_if(self.is_positive(true))
+            }
+            Step::Call(Function::Abs) => self.absolute(),
+            Step::Call(Function::Floor) => {
+                let values = Self::of(self.low.floor(), self.high.floor());
+                Self { is_continuous: values.low == values.high, ..values }.with(self)
+            }
+            Step::Call(Function::Heaviside) => {
+                let low = if self.low >= zero { one } else { zero };
+                let high = if self.high < zero { zero } else { one };
+                Self { is_continuous: low == high, ..Self::of(low, high) }.with(self)
+            }
+            _ => Self::whole().with(self).only_if(None),
+        }
+    }
+
+    fn two(self, step: Step, b: Self) -> Self {
+        let zero = F::of(0.0);
+        match step {
+            Step::Add => self.plus(b),
+            Step::Sub => self.plus(b.negative()),
+            Step::Mul => self.times(b),
+            Step::Div => self.over(b),
+            Step::Call(Function::Min) => {
+                Self::of(self.low.min(b.low), self.high.min(b.high)).with(self).with(b)
+            }
+            Step::Call(Function::Max) => {
+                Self::of(self.low.max(b.low), self.high.max(b.high)).with(self).with(b)
+            }
+            Step::Call(Function::Pow) => {
+                let power = self.one(Step::Call(Function::Ln)).times(b).one(Step::Call(Function::Exp));
+                // 0 is a base for positive exponents only.
+                let is_met = if b.low > zero { self.is_positive(true) } else { self.is_positive(false) };
+                Self::of(power.low, power.high).with(self).with(b).only_if(is_met)
+            }
+            Step::Call(Function::Atan2) => {
+                let half_turn = Self::computed(F::PI, F::PI).high;
+                let is_aside = self.low > zero || self.high < zero || b.low > zero;
+                let values = if is_aside || self.low >= zero {
+                    let ends =
+                        [(self.low, b.low), (self.low, b.high), (self.high, b.low), (self.high, b.high)];
+                    let [first, rest @ ..] = ends.map(|(y, x)| y.atan2(x));
+                    let low = rest.iter().fold(first, |low, of| low.min(*of));
+                    let high = rest.iter().fold(first, |high, of| high.max(*of));
+                    Self::computed(low, high)
+                } else {
+                    Self { is_continuous: false, ..Self::of(-half_turn, half_turn) }
+                };
+                let is_off_origin = is_aside || b.high < zero;
+                values.with(self).with(b).only_if(is_off_origin.then_some(true))
+            }
+            _ => Self::whole().with(self).with(b).only_if(None),
+        }
+    }
+
+    fn three(self, step: Step, b: Self, c: Self) -> Self {
+        let zero = F::of(0.0);
+        match step {
+            Step::Call(Function::If) => {
+                let chosen = if self.low >= zero {
+                    b
+                } else if self.high < zero {
+                    c
+                } else {
+                    b.either(c)
+                };
+                chosen.with(self)
+            }
+            Step::Call(Function::Smin | Function::Smax) => {
+                let apart = c.plus(self.plus(b.negative()).absolute().negative()).at_least(0.0);
+                let blend = apart.squared().over(c.times(Self::of(F::of(4.0), F::of(4.0))));
+                match step {
+                    Step::Call(Function::Smin) => {
+                        self.two(Step::Call(Function::Min), b).plus(blend.negative())
+                    }
+                    _ => self.two(Step::Call(Function::Max), b).plus(blend),
+                }
+            }
+            Step::Call(Function::Noise) => {
+                let at = [self, b, c].map(|of| Interval { low: of.low, high: of.high });
+                let Interval { low, high } = Interval::noise(at, [0; 3]);
+                Self::of(low, high).with(self).with(b).with(c)
+            }
+            _ => Self::whole().only_if(None),
+        }
+    }
+}
