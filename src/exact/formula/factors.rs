@@ -36,7 +36,7 @@ impl Field {
         let repeated = factors.powers.iter().filter(|(_, power)| *power > 1);
         let names = repeated.map(|(factor, _)| written(factor)).collect();
         let formula = Formula::new(self.formula().to_string(), Self::VARIABLES, steps);
-        Some((self.simplified(Self::new(Arc::new(formula))?, None), names))
+        Some((self.simplified(Self::new(Arc::new(formula))?, None, false), names))
     }
 
     /// Tells whether the formula is a polynomial, with a degree within the limit for polynomials along a line.

@@ -6,6 +6,7 @@ use super::program::{MOST_REGISTERS, Program};
 use super::step::{Function, Step};
 use super::variables::{CURVE, PATCH, SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
+use crate::f64x8::F64x8;
 use crate::interval::Interval;
 use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
@@ -39,6 +40,8 @@ pub struct FieldOf<const N: usize> {
     written: Arc<Formula>,
     /// Whether the formula as read has divisors that may be 0.
     divides: bool,
+    /// Whether this formula changes its sign where the one as read does: no powers of its factors were left out.
+    keeps_signs: bool,
     /// What is 0 where a divisor of the formula as read is 0, if this one was cleared of its denominators.
     poles: Option<Arc<Self>>,
     /// The same formula with fewer operations.
@@ -76,14 +79,20 @@ impl<const COUNT: usize> FieldOf<COUNT> {
             quick.program = program;
         }
         let (written, divides) = (formula.clone(), divides(&formula.steps));
-        Some(Self { formula, written, divides, poles: None, quick, products, cells: None })
+        Some(Self { formula, written, divides, keeps_signs: true, poles: None, quick, products, cells: None })
     }
 
     /// Returns a simpler field in place of this one. `poles` is 0 where a divisor is 0, if the field has no more
     /// divisors.
-    pub(super) fn simplified(&self, to: Self, poles: Option<Self>) -> Self {
+    pub(super) fn simplified(&self, to: Self, poles: Option<Self>, keeps_signs: bool) -> Self {
         let poles = poles.map(Arc::new).or_else(|| self.poles.clone());
-        Self { written: self.written.clone(), divides: self.divides, poles, ..to }
+        let keeps_signs = keeps_signs && self.keeps_signs;
+        Self { written: self.written.clone(), divides: self.divides, keeps_signs, poles, ..to }
+    }
+
+    /// Tells whether the formula as read changes its sign at each simple root of this one.
+    pub fn keeps_signs(&self) -> bool {
+        self.keeps_signs
     }
 
     /// Returns the formula as read.
@@ -128,6 +137,20 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Returns the operations, with products for powers.
     pub(super) fn by_products(&self) -> &Program {
         self.products.as_ref().unwrap_or(self.program())
+    }
+
+    /// Evaluates the formula as read at eight points, rounded to nearest.
+    pub fn as_written_at(&self, at: [F64x8; COUNT]) -> F64x8 {
+        let of = &*self.written;
+        let with = |registers: &mut [F64x8]| {
+            registers[..COUNT].copy_from_slice(&at);
+            of.run_inline::<_, false>(&of.program, registers)
+        };
+        if of.program.registers <= SOME_REGISTERS {
+            with(&mut [at[0]; SOME_REGISTERS])
+        } else {
+            with(&mut [at[0]; MOST_REGISTERS])
+        }
     }
 
     /// Evaluates the formula at a point.

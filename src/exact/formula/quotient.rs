@@ -52,7 +52,7 @@ impl Field {
             product
         });
         let poles = poles.and_then(with);
-        Some([self.simplified(with(above)?, poles), with(denominator)?])
+        Some([self.simplified(with(above)?, poles, true), with(denominator)?])
     }
 }
 

@@ -16,11 +16,18 @@ pub struct Seen<F> {
     pub low: F,
     /// The upper bound.
     pub high: F,
-    /// Whether the formula is defined at all of the points, or at none; `None` if that is uncertain.
-    pub is_defined: Option<bool>,
-    /// Whether the formula is certainly continuous, if it is defined at all of the points.
-    pub is_continuous: bool,
+    /// What may be wrong with the values, as the sum of [`MAYBE_UNDEFINED`], [`UNDEFINED`] and [`MAYBE_JUMPS`].
+    faults: u8,
 }
+
+/// The formula may not be defined at some of the points.
+const MAYBE_UNDEFINED: u8 = 1;
+
+/// The formula is not defined at any of the points.
+const UNDEFINED: u8 = 2;
+
+/// The formula may not be continuous.
+const MAYBE_JUMPS: u8 = 4;
 
 /// The evaluation of a formula as it was written.
 pub struct Written<'f, F> {
@@ -38,7 +45,7 @@ impl<const N: usize> FieldOf<N> {
 impl<F: Float> Written<'_, F> {
     /// Evaluates the formula at the points of a box.
     pub fn at(&mut self, at: &[Interval<F>]) -> Seen<F> {
-        let unknown = Seen { is_defined: None, ..Seen::whole() };
+        let unknown = Seen { faults: MAYBE_UNDEFINED, ..Seen::whole() };
         self.waiting.clear();
         for step in self.steps {
             let mut operand = || self.waiting.pop().unwrap_or(unknown);
@@ -72,7 +79,20 @@ impl<F: Float> Seen<F> {
     }
 
     fn of(low: F, high: F) -> Self {
-        Self { low, high, is_defined: Some(true), is_continuous: true }
+        Self { low, high, faults: 0 }
+    }
+
+    /// Tells whether the formula is defined at all of the points, or at none; `None` if that is uncertain.
+    pub fn is_defined(&self) -> Option<bool> {
+        match self.faults {
+            faults if faults & UNDEFINED != 0 => Some(false),
+            faults => (faults & MAYBE_UNDEFINED == 0).then_some(true),
+        }
+    }
+
+    /// Tells whether the formula is certainly defined at all of the points, and continuous.
+    pub fn is_continuous(&self) -> bool {
+        self.faults == 0
     }
 
     /// Returns whether the values have one sign, which is then that of a positive or a negative number.
@@ -111,19 +131,25 @@ impl<F: Float> Seen<F> {
         Self { low: self.low.max(F::of(least)), high: self.high.max(F::of(least)), ..self }
     }
 
-    /// Adds what is known of an operand.
+    /// Adds what may be wrong with an operand.
+    #[inline(always)]
     fn with(self, operand: Self) -> Self {
-        let is_defined = match (self.is_defined, operand.is_defined) {
-            (Some(false), _) | (_, Some(false)) => Some(false),
-            (Some(true), Some(true)) => Some(true),
-            _ => None,
-        };
-        Self { is_defined, is_continuous: self.is_continuous && operand.is_continuous, ..self }
+        Self { faults: self.faults | operand.faults, ..self }
     }
 
     /// Demands a condition that holds at all of the points, or at none, or at some.
     fn only_if(self, is_met: Option<bool>) -> Self {
-        self.with(Self { is_defined: is_met, ..self })
+        let fault = match is_met {
+            Some(true) => 0,
+            Some(false) => UNDEFINED,
+            None => MAYBE_UNDEFINED,
+        };
+        Self { faults: self.faults | fault, ..self }
+    }
+
+    /// Demands that values that may jump do not.
+    fn continuous_if(self, is_met: bool) -> Self {
+        Self { faults: self.faults | if is_met { 0 } else { MAYBE_JUMPS }, ..self }
     }
 
     fn is_not_0(self) -> Option<bool> {
@@ -155,17 +181,27 @@ impl<F: Float> Seen<F> {
     }
 
     fn times(self, b: Self) -> Self {
+        let values = match F::product_ends([self.low, self.high], [b.low, b.high]) {
+            Some((low, high)) => Self::rounded(low, high),
+            None => self.times_0_or_infinity(b),
+        };
+        values.with(self).with(b)
+    }
+
+    /// Returns the product of values that may be 0 or unbounded.
+    #[inline(never)]
+    fn times_0_or_infinity(self, b: Self) -> Self {
         let zero = F::of(0.0);
         // An unbounded operand has finite values, and so their products with 0 are 0.
         let product = |one: F, other: F| if one == zero || other == zero { zero } else { one * other };
         let ends = [(self.low, b.low), (self.low, b.high), (self.high, b.low), (self.high, b.high)];
-        let [first, rest @ ..] = ends.map(|(one, other)| product(one, other));
-        let low = rest.iter().fold(first, |low, of| if *of < low { *of } else { low });
-        let high = rest.iter().fold(first, |high, of| if *of > high { *of } else { high });
+        let [low, high] = extremes(ends.map(|(one, other)| product(one, other)));
         let is_0 = |of: Self| of.low == zero && of.high == zero;
-        let values = if is_0(self) || is_0(b) { Self::of(zero, zero) } else { Self::rounded(low, high) };
-        let values = if self.low >= zero && b.low >= zero { values.at_least(0.0) } else { values };
-        values.with(self).with(b)
+        if is_0(self) || is_0(b) {
+            return Self::of(zero, zero);
+        }
+        let values = Self::rounded(low, high);
+        if self.low >= zero && b.low >= zero { values.at_least(0.0) } else { values }
     }
 
     fn over(self, b: Self) -> Self {
@@ -173,9 +209,7 @@ impl<F: Float> Seen<F> {
             Self::whole()
         } else {
             let ends = [(self.low, b.low), (self.low, b.high), (self.high, b.low), (self.high, b.high)];
-            let [first, rest @ ..] = ends.map(|(one, other)| one / other);
-            let low = rest.iter().fold(first, |low, of| if *of < low { *of } else { low });
-            let high = rest.iter().fold(first, |high, of| if *of > high { *of } else { high });
+            let [low, high] = extremes(ends.map(|(one, other)| one / other));
             Self::rounded(low, high)
         };
         values.with(self).with(b).only_if(b.is_not_0())
@@ -183,7 +217,10 @@ impl<F: Float> Seen<F> {
 
     fn squared(self) -> Self {
         let size = self.absolute();
-        size.times(size)
+        if size.high == F::of(0.0) {
+            return size;
+        }
+        Self::rounded(size.low * size.low, size.high * size.high).at_least(0.0).with(self)
     }
 
     fn power(self, exponent: u32) -> Self {
@@ -210,8 +247,12 @@ impl<F: Float> Seen<F> {
 
     /// Returns the hull of a choice between two values.
     fn either(self, b: Self) -> Self {
-        let is_defined = if self.is_defined == b.is_defined { self.is_defined } else { None };
-        Self { low: self.low.min(b.low), high: self.high.max(b.high), is_defined, is_continuous: false }
+        let fault = |of: Self| if of.is_defined() == Some(true) { 0 } else { MAYBE_UNDEFINED };
+        let faults = match [self, b].map(|of| of.is_defined()) {
+            [Some(false), Some(false)] => UNDEFINED,
+            _ => fault(self) | fault(b),
+        };
+        Self { low: self.low.min(b.low), high: self.high.max(b.high), faults: faults | MAYBE_JUMPS }
     }
 
     /// Returns the sine or the cosine. Their slopes are at most 1.
@@ -258,12 +299,12 @@ impl<F: Float> Seen<F> {
             Step::Call(Function::Abs) => self.absolute(),
             Step::Call(Function::Floor) => {
                 let values = Self::of(self.low.floor(), self.high.floor());
-                Self { is_continuous: values.low == values.high, ..values }.with(self)
+                values.continuous_if(values.low == values.high).with(self)
             }
             Step::Call(Function::Heaviside) => {
                 let low = if self.low >= zero { one } else { zero };
                 let high = if self.high < zero { zero } else { one };
-                Self { is_continuous: low == high, ..Self::of(low, high) }.with(self)
+                Self::of(low, high).continuous_if(low == high).with(self)
             }
             _ => Self::whole().with(self).only_if(None),
         }
@@ -294,12 +335,10 @@ impl<F: Float> Seen<F> {
                 let values = if is_aside || self.low >= zero {
                     let ends =
                         [(self.low, b.low), (self.low, b.high), (self.high, b.low), (self.high, b.high)];
-                    let [first, rest @ ..] = ends.map(|(y, x)| y.atan2(x));
-                    let low = rest.iter().fold(first, |low, of| low.min(*of));
-                    let high = rest.iter().fold(first, |high, of| high.max(*of));
+                    let [low, high] = extremes(ends.map(|(y, x)| y.atan2(x)));
                     Self::computed(low, high)
                 } else {
-                    Self { is_continuous: false, ..Self::of(-half_turn, half_turn) }
+                    Self::of(-half_turn, half_turn).continuous_if(false)
                 };
                 let is_off_origin = is_aside || b.high < zero;
                 values.with(self).with(b).only_if(is_off_origin.then_some(true))
@@ -339,4 +378,11 @@ impl<F: Float> Seen<F> {
             _ => Self::whole().only_if(None),
         }
     }
+}
+
+/// Returns the smallest and the largest of four numbers.
+fn extremes<F: Float>([first, rest @ ..]: [F; 4]) -> [F; 2] {
+    let low = rest.iter().fold(first, |low, of| if *of < low { *of } else { low });
+    let high = rest.iter().fold(first, |high, of| if *of > high { *of } else { high });
+    [low, high]
 }

@@ -3,9 +3,11 @@
 use super::bernstein::{Bernstein, Roots};
 use crate::polynomial::{Coefficient, Polynomial};
 
-/// A part of a polynomial's piece, with ends from -1 to 1, that has a root or may have some.
+/// A part of a polynomial's piece, with ends from -1 to 1.
 #[derive(Clone, Copy, Debug)]
 pub enum RootPart<C> {
+    /// There is no root.
+    Free([C; 2]),
     /// There is exactly one root.
     Root {
         /// The ends of the part.
@@ -17,7 +19,7 @@ pub enum RootPart<C> {
     Hidden([C; 2]),
 }
 
-/// Visits the parts that have a root or may have some, in order, until the visitor returns a value. Also returns `None`
+/// Visits the parts into which a piece is cut, in order, until the visitor returns a value. Also returns `None`
 /// if nothing is known of the polynomial.
 pub fn visit<C: Coefficient, const N: usize, R>(
     polynomial: &Polynomial<C, N>,
@@ -46,7 +48,7 @@ impl<C: Coefficient, R, V: FnMut(RootPart<C>) -> Option<R>> Search<V, C> {
     fn piece<const N: usize>(&mut self, form: &Bernstein<C, N>, ends: [C; 2], depth: usize) -> Option<R> {
         let [low, high] = ends;
         match form.roots() {
-            Roots::None => self.flush(),
+            Roots::None => self.flush().or_else(|| (self.visit)(RootPart::Free(ends))),
             Roots::One { rises, .. } => self.flush().or_else(|| (self.visit)(RootPart::Root { ends, rises })),
             Roots::Unknown | Roots::Monotone { .. } if depth > 0 => {
                 let middle = C::from(0.5) * (low + high);

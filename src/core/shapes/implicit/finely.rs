@@ -66,6 +66,7 @@ impl<T: Implicit> ExactRay<'_, T> {
             ((low + high) + (high - low) * s).high
         };
         let root = isolation::visit(&polynomial, |part| match part {
+            RootPart::Free(_) => None,
             RootPart::Root { ends, rises } => {
                 counts(rises).then(|| at(isolation::refined(&polynomial, ends, rises)))
             }

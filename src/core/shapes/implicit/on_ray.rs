@@ -51,7 +51,7 @@ impl<T: Implicit> ImplicitShape<T> {
     /// them; `None` if that is uncertain.
     fn is_defined(&self, at: [Interval; 3]) -> Option<bool> {
         match self.formula.field().filter(|field| field.divides()) {
-            Some(field) => field.written().at(&at).is_defined,
+            Some(field) => field.written().at(&at).is_defined(),
             None => Some(true),
         }
     }

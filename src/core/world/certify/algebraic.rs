@@ -1,6 +1,7 @@
 //! First hits of a surface whose equation is a polynomial, found from its coefficients along the line, rounded or
 //! exact.
 
+use super::check;
 use super::equation::{Equation, HitEnclosure, Values, hit_at, is_kept, may_be_hit};
 use crate::geometry::sight::{Line, Sight};
 use f256::f256;
@@ -31,11 +32,12 @@ pub(super) fn first_hit<C: Coefficient>(
     line: &Line<Interval<C::End>>,
     leaves: bool,
 ) -> Option<HitEnclosure<C::End>> {
-    let mut first = HitEnclosure::Misses;
-    visit_hits(shape, line, leaves, |hit| {
+    let (line, mut places, mut first) = (shape.to_local(*line), Vec::new(), HitEnclosure::Misses);
+    visit_hits(shape, &line, leaves, &mut places, |hit| {
         first = hit;
         true
     })?;
+    let first = check::first(shape, &line, first, &places);
     (!(leaves && matches!(first, HitEnclosure::Doubtful(_)))).then_some(first)
 }
 
@@ -45,24 +47,25 @@ pub(super) fn all_hits<C: Coefficient>(
     line: &Line<Interval<C::End>>,
     leaves: bool,
 ) -> Option<Vec<HitEnclosure<C::End>>> {
-    let mut all = Vec::new();
-    visit_hits(shape, line, leaves, |hit| {
+    let (line, mut places, mut all) = (shape.to_local(*line), Vec::new(), Vec::new());
+    visit_hits(shape, &line, leaves, &mut places, |hit| {
         all.push(hit);
         !matches!(hit, HitEnclosure::Hits(_))
     })?;
+    let all = check::all(shape, &line, all, &places);
     (!(leaves && matches!(all[..], [HitEnclosure::Doubtful(_), ..]))).then_some(all)
 }
 
-/// Visits the hits with t > 0 of a line in order, until the visitor returns true; `None` where the equation is no
-/// polynomial.
+/// Visits the hits with t > 0 of a line in the equation's coordinates, in order, until the visitor returns true; `None`
+/// where the equation is no polynomial. Adds the ends of the pieces that have no root.
 fn visit_hits<C: Coefficient>(
     shape: &dyn Coefficients<C>,
     line: &Line<Interval<C::End>>,
     leaves: bool,
+    places: &mut Vec<f64>,
     mut visit: impl FnMut(HitEnclosure<C::End>) -> bool,
 ) -> Option<()> {
     let zero = C::End::of(0.0);
-    let line = shape.to_local(*line);
     let [low, high] = shape.extent();
     let Some((mut from, to)) = line.clip(low, high) else { return Some(()) };
     if !to.is_finite() {
@@ -92,7 +95,12 @@ fn visit_hits<C: Coefficient>(
         let place = |end: C| base + Interval::point(half) * end.bounds(0.0);
         leaves && place(low).high < zero && place(high).low > zero
     };
-    let hit = |part| match part {
+    let (near_base, near_half) = (base.low.to_f64(), half.to_f64());
+    let mut hit = |part: RootPart<C>| match part {
+        RootPart::Free([low, _]) => {
+            places.push(near_base + near_half * low.nearest());
+            None
+        }
         RootPart::Root { ends, rises } => {
             let at = interval(isolation::enclosed(&polynomial, ends, rises));
             let distance = base + at;
@@ -140,11 +148,12 @@ pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclo
     let is_pole = |root: &Root| poles.as_ref().is_some_and(|poles| polynomial.shares(root, poles));
     let is_wanted = |root: &Root| is_hit(root.wide()) != Some(false) && !is_pole(root);
     let root = polynomial.first_root(from, to, is_wanted);
-    Some(match root.map(|root| root.wide()) {
+    let found = match root.map(|root| root.wide()) {
         None => HitEnclosure::Misses,
         Some(at) if is_hit(at).is_some() => HitEnclosure::Hits(at),
         Some(at) => HitEnclosure::Edge(at),
-    })
+    };
+    Some(check::first(shape, &near, found, &[]))
 }
 
 /// Returns the start and the direction of a line, if its numbers are exact.

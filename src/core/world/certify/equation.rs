@@ -169,7 +169,7 @@ fn is_defined<F: Float>(
     distance: Interval<F>,
 ) -> Option<bool> {
     match shape.field().filter(|field| field.divides()) {
-        Some(field) => field.written().at(&line.at(distance)).is_defined,
+        Some(field) => field.written().at(&line.at(distance)).is_defined(),
         None => Some(true),
     }
 }

@@ -7,6 +7,7 @@
 
 mod algebraic;
 mod along;
+mod check;
 mod closed;
 mod doubt;
 mod equation;

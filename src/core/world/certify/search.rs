@@ -1,5 +1,6 @@
 //! First hits of any surface, by splitting a line until each piece certainly has no root, or exactly one.
 
+use super::check;
 use super::equation::{HitEnclosure, Values, hit_at, may_be_hit};
 use crate::geometry::sight::Line;
 use tabray_exact::dual::Dual;
@@ -24,6 +25,19 @@ pub fn first_hit<F: Float>(
     leaves: bool,
     pieces: usize,
 ) -> HitEnclosure<F> {
+    let mut places = Vec::new();
+    let found = unchecked(shape, line, leaves, pieces, &mut places);
+    check::first(shape, line, found, &places)
+}
+
+/// Finds the first hit, and adds the ends of the pieces that have none.
+fn unchecked<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    leaves: bool,
+    pieces: usize,
+    places: &mut Vec<f64>,
+) -> HitEnclosure<F> {
     let zero = F::of(0.0);
     let Some((mut from, to)) = clipped(shape, line) else { return HitEnclosure::Misses };
     if !to.is_finite() {
@@ -47,7 +61,7 @@ pub fn first_hit<F: Float>(
     let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
     let pieces = if is_lost { pieces.min(FEW_PIECES) } else { pieces };
     let ends = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
-    search_pieces(shape, &near, ends, base, pieces)
+    search_pieces(shape, &near, ends, base, pieces, places)
 }
 
 /// Finds the first hit between two ends of a line whose parameter counts from `base`.
@@ -57,6 +71,7 @@ fn search_pieces<F: Float>(
     (from, to): (F, F),
     base: Interval<F>,
     pieces: usize,
+    places: &mut Vec<f64>,
 ) -> HitEnclosure<F> {
     let zero = F::of(0.0);
     // A piece shorter than about 8 ulps of the whole is too short to split.
@@ -69,7 +84,7 @@ fn search_pieces<F: Float>(
         let piece = Interval { low, high };
         let start = || (base + Interval::point(low)).low.max(zero);
         match search.judge(piece) {
-            Judgement::Free => {}
+            Judgement::Free => places.push((base.low + low).to_f64()),
             Judgement::Root(root) => {
                 let distance = base + root;
                 if distance.high <= zero {
