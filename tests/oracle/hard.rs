@@ -2,15 +2,11 @@
 //! silhouettes, and almost within planes.
 
 use super::rays::{Random, toward};
-use super::shapes::{self, Line, Plane, Quadric};
 use super::tally::{Tally, Tolerance, ulp};
-use super::{Truth, fplane_text, spelt};
+use super::{Surface, Truth, fplane_text, spelt};
 use glam::{DMat3, DVec2, DVec3};
 use tabray::geometry::{Ray, RayRange};
 use tabray::world::Hittable;
-
-/// A function that returns the first hit of a line beyond a distance.
-type FirstHit = Box<dyn Fn(&Line, f64) -> Truth>;
 
 /// A function that returns a random point of a surface and its normal, if it finds one.
 type RandomPlace = dyn Fn(&mut Random) -> Option<(DVec3, DVec3)>;
@@ -19,8 +15,7 @@ type RandomPlace = dyn Fn(&mut Random) -> Option<(DVec3, DVec3)>;
 pub struct Subject {
     /// The text of the entity, with a material `m`.
     pub text: String,
-    /// The function that returns the first hit of a ray beyond a distance.
-    truth: FirstHit,
+    surface: Surface,
     /// The middle of a sphere that contains what rays are aimed at; `reach` is its radius in world units.
     middle: DVec3,
     reach: f64,
@@ -93,8 +88,8 @@ fn ellipsoid(random: &mut Random, is_sphere: bool) -> Subject {
         Some((center + radius * scale * at, (at / scale).normalize()))
     };
     Subject {
+        surface: Surface::read(&text),
         text,
-        truth: Box::new(move |line, near| shapes::ellipsoid(center, radius, scale, line, near)),
         middle: center,
         reach: radius * scale.max_element(),
         brink: Brink::Round(Box::new(round)),
@@ -162,13 +157,11 @@ fn quadric(random: &mut Random) -> Subject {
         spelt(corners[0]),
         spelt(corners[1]),
     );
-    let quadric = Quadric { coefficients, center, corners };
-    let truth = move |line: &Line, near: f64| quadric.first_hit(line, near);
+    let (surface, probe) = (Surface::read(&text), Surface::read(&text));
     let middle = center + middle;
-    let probe = Quadric { coefficients, center, corners };
     let round = move |random: &mut Random| {
         let ray = toward(middle + 5.0 * reach * random.direction(), random.in_ball(middle, reach));
-        let hit = probe.first_hit(&(&ray).into(), 0.0).hit()?;
+        let hit = probe.first_hit(&ray, 0.0).hit()?;
         let [a, b, c, d, e, f, g, h, i, _] = coefficients.map(|coefficient| coefficient / factor);
         let at = ray.at(hit.t.high);
         let DVec3 { x, y, z } = at - center;
@@ -179,7 +172,7 @@ fn quadric(random: &mut Random) -> Subject {
         );
         Some((at, normal.try_normalize()?))
     };
-    Subject { text, truth: Box::new(truth), middle, reach, brink: Brink::Round(Box::new(round)) }
+    Subject { text, surface, middle, reach, brink: Brink::Round(Box::new(round)) }
 }
 
 fn triangle(random: &mut Random) -> Subject {
@@ -193,8 +186,8 @@ fn triangle(random: &mut Random) -> Subject {
     let normal = (b - a).cross(c - a).normalize_or(DVec3::Y);
     let edge = |from: DVec3, to: DVec3| (from, to, normal.cross(to - from).normalize_or(DVec3::X));
     Subject {
+        surface: Surface::read(&text),
         text,
-        truth: beyond(move |line| shapes::triangle([a, b, c], line)),
         middle: (a + b + c) / 3.0,
         reach: (b - a).length().max((c - a).length()),
         brink: Brink::Edges(vec![edge(a, b), edge(b, c), edge(c, a)]),
@@ -215,10 +208,10 @@ fn normal(random: &mut Random) -> DVec3 {
 
 fn plane(random: &mut Random) -> Subject {
     let (normal, point) = (normal(random), place(random));
-    let plane = Plane::new(normal, point);
+    let text = format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point));
     Subject {
-        text: format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point)),
-        truth: beyond(move |line| plane.first_hit(line)),
+        surface: Surface::read(&text),
+        text,
         middle: point,
         reach: 3.0,
         brink: Brink::Endless(normal.normalize()),
@@ -235,7 +228,6 @@ fn rectangle(random: &mut Random) -> Subject {
             break xdir;
         }
     };
-    let plane = Plane::new(normal, point);
     let text = fplane_text(normal, point, xdir, dimensions);
     let y = unit.cross(xdir).normalize();
     let x = y.cross(unit);
@@ -247,26 +239,18 @@ fn rectangle(random: &mut Random) -> Subject {
         (corner(1.0, 1.0), corner(0.0, 1.0), -y),
     ];
     Subject {
+        surface: Surface::read(&text),
         text,
-        truth: beyond(move |line| shapes::rectangle(&plane, xdir, dimensions, line)),
         middle: corner(0.5, 0.5),
         reach: 0.7 * dimensions.length(),
         brink: Brink::Edges(edges),
     }
 }
 
-/// Returns the truth, beyond a distance, of a shape that is met at most once.
-fn beyond(truth: impl Fn(&Line) -> Truth + 'static) -> FirstHit {
-    Box::new(move |line, near| match truth(line) {
-        Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
-        truth => truth,
-    })
-}
-
 impl Subject {
     /// Returns the first hit of a ray beyond a distance.
-    pub fn truth(&self, line: &Line, near: f64) -> Truth {
-        (self.truth)(line, near)
+    pub fn truth(&self, ray: &Ray, near: f64) -> Truth {
+        self.surface.first_hit(ray, near)
     }
 
     /// Returns a random ray of a set.
@@ -332,7 +316,7 @@ impl Subject {
         let sure = hit.map_or(0.0, |hit| 64.0 * ulp(hit.t.high));
         let slant = hit.map_or(1.0, |hit| shape.normal(ray.at(hit.t.high)).dot(ray.dir).abs());
         let off_surface = |found: f64| hit.map_or(0.0, |hit| (hit.t - found.into()).high.abs() * slant);
-        let next = |near: f64| self.truth(&ray.into(), near);
+        let next = |near: f64| self.truth(ray, near);
         tally.count(truth, found, Tolerance { sure, most: f64::INFINITY }, next, off_surface);
     }
 }

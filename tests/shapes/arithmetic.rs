@@ -5,9 +5,8 @@
 use crate::common;
 use crate::oracle::hard::{self, SETS};
 use crate::oracle::rays::Random;
-use crate::oracle::shapes::{self, Line, Plane, Quadric};
 use crate::oracle::tally::Tally;
-use crate::oracle::{Truth, fplane_text, spelt};
+use crate::oracle::{Surface, Truth, fplane_text, spelt};
 use glam::{DVec3, dvec2, dvec3};
 use tabray::geometry::{Bracket, MISS, Ray, RayRange};
 use tabray::scene::Model;
@@ -17,17 +16,15 @@ use tabray::world::{AnyShape, Hittable};
 const SHAPES: usize = 200;
 const RAYS: usize = 40;
 
-fn scene(accuracy: &str, object: &str) -> Model {
-    common::model(&format!(
-        "camera eye {{ pixeldim 640 480 worlddim 8 6 viewpoint 4 3 7 accuracy {accuracy} }}
-         material m {{ ambient 1 1 1 }}
-         {object}"
-    ))
+const CAMERA: &str = "camera eye { pixeldim 640 480 worlddim 8 6 viewpoint 4 3 7 }";
+
+fn scene(object: &str) -> Model {
+    common::model(&format!("{CAMERA} material m {{ ambient 1 1 1 }} {object}"))
 }
 
-/// Returns the shape of an entity's text, with the exact accuracy.
+/// Returns the shape of an entity's text.
 fn shape(object: &str) -> AnyShape {
-    scene("exact", object).objects.remove(0).shape
+    scene(object).objects.remove(0).shape
 }
 
 /// Returns the distance of the first hit.
@@ -57,7 +54,7 @@ fn finds(kind: &str, ulps: f64) {
             for _ in 0..RAYS {
                 let ray = subject.ray(set, &mut random);
                 let before = tally.wrong();
-                let truth = subject.truth(&Line::from(&ray), 0.0);
+                let truth = subject.truth(&ray, 0.0);
                 subject.count(&mut tally, &*shape, &ray, truth);
                 let found = shape.distance(&ray, &RayRange::ALL);
                 let bracket = shape.t_bounds(&ray, &RayRange::ALL);
@@ -122,13 +119,12 @@ fn rectangles_are_found() {
 /// shapes whose boundary that ray passes at a distance of a few ulps.
 #[test]
 fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
-    let camera = scene("exact", "plane p { material m normal 0 1 0 point 0 0 0 }").camera.value;
+    let camera = scene("plane p { material m normal 0 1 0 point 0 0 0 }").camera.value;
     let mut random = Random::new(15);
     let (mut wrong, mut certain) = (Vec::new(), 0);
     for index in 0..4_000 {
         let pixel = [random.below(640), random.below(480)];
         let ray = camera.ray(f64::from(pixel[0]), f64::from(pixel[1]));
-        let line = Line::of_pixel(dvec3(4.0, 3.0, 7.0), dvec2(8.0, 6.0), [640, 480], pixel);
         let (along, across) = ray.dir.any_orthonormal_pair();
         let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
         let (side, other) = (cos * along + sin * across, cos * across - sin * along);
@@ -136,10 +132,9 @@ fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
         let at = ray.at(random.between(8.0, 60.0)) + apart * side;
         let radius = random.between(0.1, 3.0);
         let center = at + radius * side;
-        let (text, truth) = match index % 5 {
+        let text = match index % 5 {
             0 => {
-                let text = format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center));
-                (text, shapes::sphere(center, radius, &line, 0.0))
+                format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center))
             }
             1 => {
                 let scale = DVec3::from([0; 3].map(|_| 10_f64.powf(random.between(-3.0, 3.0))));
@@ -148,38 +143,32 @@ fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
                 let half = radius * (side / scale).normalize() * scale;
                 let center = at + half;
                 let (place, stretch) = (spelt(center), spelt(scale));
-                let text =
-                    format!("ellipsoid e {{ material m center {place} radius {radius:?} scale {stretch} }}");
-                (text, shapes::ellipsoid(center, radius, scale, &line, 0.0))
+                format!("ellipsoid e {{ material m center {place} radius {radius:?} scale {stretch} }}")
             }
             2 => {
-                let coefficients = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, radius * radius];
                 let corners = [DVec3::splat(-radius), DVec3::splat(radius)];
-                let text = format!(
+                format!(
                     "quadric q {{ material m coefficients 1 1 1 0 0 0 0 0 0 {:?} center {} box {} {} }}",
-                    coefficients[9],
+                    radius * radius,
                     spelt(center),
                     spelt(corners[0]),
                     spelt(corners[1])
-                );
-                (text, Quadric { coefficients, center, corners }.first_hit(&line, 0.0))
+                )
             }
             3 => {
                 let leaning = other + random.between(-3.0, 3.0) * ray.dir;
                 let corners = [at - radius * leaning, at + radius * leaning, at + radius * (side + ray.dir)];
                 let [a, b, c] = corners.map(spelt);
-                let text = format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}");
-                (text, shapes::triangle(corners, &line))
+                format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}")
             }
             _ => {
                 let normal = ray.dir + random.between(-3.0, 3.0) * side;
                 let xdir = normal.cross(other);
                 let point = at - radius * other;
-                let dimensions = dvec2(2.0 * radius, 3.0 * radius);
-                let text = fplane_text(normal, point, xdir, dimensions);
-                (text, shapes::rectangle(&Plane::new(normal, point), xdir, dimensions, &line))
+                fplane_text(normal, point, xdir, dvec2(2.0 * radius, 3.0 * radius))
             }
         };
+        let truth = Surface::read(&format!("{CAMERA} {text}")).first_hit_of_pixel(pixel);
         let bracket = shape(&text).t_bounds(&ray, &RayRange::ALL);
         certain += u32::from(bracket.near == MISS || bracket.far < MISS);
         if !holds(bracket, truth) {

@@ -5,6 +5,7 @@
 //! pieces, and for the middle of each piece faces are counted along another direction, which meets no edge.
 
 use crate::common::model_in;
+use crate::oracle::dyadic::Dyadic;
 use glam::DVec3;
 use proptest::prelude::*;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
@@ -14,12 +15,6 @@ use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::query::{ExactRay, Query, Verdict};
 use tabray::scene::Model;
 use tempfile::TempDir;
-
-#[allow(dead_code, reason = "another test uses the rest")]
-#[path = "../slow/falsify/dyadic.rs"]
-mod dyadic;
-
-use dyadic::Dyadic;
 
 type Vector = [Dyadic; 3];
 /// The corners of a triangle, counterclockwise as seen from the outside.

@@ -4,9 +4,8 @@
 use crate::common::model;
 use crate::oracle::rays::{self, BASE, Random};
 use crate::oracle::revolution::Revolution;
-use crate::oracle::shapes::{self, Plane, Quadric};
 use crate::oracle::tally::{Tally, Tolerance, ulp};
-use crate::oracle::{Crossings, Truth, fplane_text, spelt};
+use crate::oracle::{Crossings, Surface, Truth, fplane_text, spelt};
 use glam::{DMat3, DVec3, dvec2, dvec3};
 use hashbrown::HashMap;
 use std::cell::RefCell;
@@ -19,7 +18,7 @@ use tabray::world::certify::{self, Enclosure, Precision};
 const RAYS: usize = 10_000;
 
 /// The number of rays of the sets that matter most.
-const MANY_RAYS: usize = 100_000;
+const MANY_RAYS: usize = 20_000;
 
 /// The tolerance for the notes' methods, which stop at 1e-4 world units.
 const ROUGHLY: Tolerance = Tolerance { sure: 1e-3, most: 0.05 };
@@ -66,9 +65,9 @@ impl Subject<'_> {
         tally.finish()
     }
 
-    /// Returns the faults of a set of rays: hits that are missed, invented or not the first; more than 1 of 1000 rays
-    /// without a truth; hits more than `off_surface` world units away from the surface; distances off by more than
-    /// `ulps` units in the last place.
+    /// Returns the faults of a set of rays: hits that are missed, invented or not the first; more than one and
+    /// 1 of 1000 rays without a truth; hits more than `off_surface` world units away from the surface; distances off by
+    /// more than `ulps` units in the last place.
     fn faults(&self, set: &str, rays: &[Ray], off_surface: f64, ulps: f64) -> Vec<String> {
         // No crossing is taken for another one, however close to each other they are.
         let tolerance = Tolerance { sure: 1e-9 * self.scale, most: self.most * self.scale };
@@ -79,7 +78,7 @@ impl Subject<'_> {
         if let Some((index, truth, found)) = tally.first_wrong {
             faults.push(format!("wrong: {name}: {tally}\n  {:?}: {truth:?}, not {found:?}", rays[index]));
         }
-        if tally.undecided * 1000 > tally.rays || tally.off_surface > off_surface || tally.ulps > ulps {
+        if tally.undecided > 1 + tally.rays / 1000 || tally.off_surface > off_surface || tally.ulps > ulps {
             faults.push(format!("inexact: {name}: {tally}"));
         }
         faults
@@ -151,14 +150,14 @@ fn finds_the_revolution(name: &str, formula: &str, height: f64) {
             let off_surface = 1e-14 * scale + rounding(&rays, middle);
             faults.extend(subject.faults(set, &rays, off_surface, f64::INFINITY));
         };
-        // At the notes' scale, a surface is tested with as many rays as the time allows here; `tests/slow/accuracy.rs`
-        // traces a million.
-        let many = if scale == 1.0 { MANY_RAYS } else { RAYS };
+        // The truth takes 0.1 ms: at the notes' scale, a surface is tested with as many rays as the time allows here.
+        // `tests/slow/accuracy.rs` traces a million.
+        let (many, few) = if scale == 1.0 { (MANY_RAYS, RAYS / 2) } else { (RAYS / 4, RAYS / 4) };
         check("camera", &mut rays::camera(many, scale));
         check("grazing", &mut rays::grazing(many, scale, |random| rays::place_on(&surface, random)));
-        check("inside", &mut rays::inside(RAYS, middle, reach));
-        check("far 1e4", &mut rays::aimed(RAYS, middle, reach, scale * 1e4));
-        check("far 1e7", &mut rays::aimed(RAYS, middle, reach, scale * 1e7));
+        check("inside", &mut rays::inside(few, middle, reach));
+        check("far 1e4", &mut rays::aimed(few, middle, reach, scale * 1e4));
+        check("far 1e7", &mut rays::aimed(few, middle, reach, scale * 1e7));
     }
     assert_none(&faults);
 }
@@ -282,15 +281,13 @@ fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
 #[test]
 fn two_truths_of_a_cone_agree() {
     let surface = Revolution::new(CONE.0, BASE, CONE.1);
-    let quadric = Quadric {
-        coefficients: [9.0, -4.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        center: BASE + dvec3(0.0, 6.0, 0.0),
-        corners: [dvec3(-9.0, -6.0, -9.0), dvec3(9.0, 0.0, 9.0)],
-    };
+    let quadric = Surface::read(&format!(
+        "quadric q {{ material m coefficients 9 -4 9 0 0 0 0 0 0 0 center {} box -9 -6 -9 9 0 9 }}",
+        spelt(BASE + dvec3(0.0, 6.0, 0.0))
+    ));
     let grazing = rays::grazing(RAYS, 1.0, |random| rays::place_on(&surface, random));
     for ray in rays::camera(RAYS, 1.0).chain(grazing) {
-        let (one, other) =
-            (surface.first_hit(&ray, 0.0, Crossings::All), quadric.first_hit(&(&ray).into(), 0.0));
+        let (one, other) = (surface.first_hit(&ray, 0.0, Crossings::All), quadric.first_hit(&ray, 0.0));
         match (one, other) {
             (Truth::Hit(one), Truth::Hit(other)) => {
                 let apart = (one.t - other.t).high.abs();
@@ -330,66 +327,55 @@ const REACH: f64 = 3.0;
 /// A shape's text in a scene of some scale, and its truth.
 type Spelt = (String, Box<dyn Fn(&Ray, f64) -> Truth>);
 
+/// Returns a shape's text and its truth.
+fn with_truth(text: String) -> Spelt {
+    let surface = Surface::read(&text);
+    (text, Box::new(move |ray, near| surface.first_hit(ray, near)))
+}
+
 fn sphere(scale: f64) -> Spelt {
     let (center, radius) = (scale * MIDDLE, scale * 2.0);
-    let text = format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center));
-    (text, Box::new(move |ray, near| shapes::sphere(center, radius, &ray.into(), near)))
+    with_truth(format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center)))
 }
 
 fn ellipsoid(scale: f64) -> Spelt {
     let (center, radius, stretch) = (scale * MIDDLE, scale, dvec3(2.0, 0.3, 1.1));
-    let text = format!(
+    with_truth(format!(
         "ellipsoid e {{ material m center {} radius {radius:?} scale {} }}",
         spelt(center),
         spelt(stretch)
-    );
-    (text, Box::new(move |ray, near| shapes::ellipsoid(center, radius, stretch, &ray.into(), near)))
+    ))
 }
 
 /// Returns a hyperboloid of one sheet, clipped to a box.
 fn quadric(scale: f64) -> Spelt {
     let coefficients = [1.0, -0.5, 1.0, 0.1, 0.2, -0.1, 0.0, 0.0, 0.0, scale * scale];
     let corners = [scale * dvec3(-1.75, -2.0, -1.875), scale * dvec3(1.875, 2.0, 1.75)];
-    let quadric = Quadric { coefficients, center: scale * MIDDLE, corners };
-    let text = format!(
+    with_truth(format!(
         "quadric q {{ material m coefficients {} center {} box {} {} }}",
         coefficients.map(|coefficient| format!("{coefficient:?}")).join(" "),
-        spelt(quadric.center),
+        spelt(scale * MIDDLE),
         spelt(corners[0]),
         spelt(corners[1]),
-    );
-    (text, Box::new(move |ray, near| quadric.first_hit(&ray.into(), near)))
+    ))
 }
 
 fn plane(scale: f64) -> Spelt {
     let (normal, point) = (dvec3(0.3, 1.0, 0.5), scale * MIDDLE);
-    let text = format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point));
-    let plane = Plane::new(normal, point);
-    (text, Box::new(move |ray, near| beyond(plane.first_hit(&ray.into()), near)))
+    with_truth(format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point)))
 }
 
 fn fplane(scale: f64) -> Spelt {
     let (normal, xdir, dimensions) = (dvec3(0.3, 1.0, 0.5), dvec3(1.0, 0.2, 0.0), scale * dvec2(3.0, 2.5));
     let point = scale * (MIDDLE - dvec3(1.5, 0.0, -1.0));
-    let text = fplane_text(normal, point, xdir, dimensions);
-    let plane = Plane::new(normal, point);
-    (text, Box::new(move |ray, near| beyond(shapes::rectangle(&plane, xdir, dimensions, &ray.into()), near)))
+    with_truth(fplane_text(normal, point, xdir, dimensions))
 }
 
 fn triangle(scale: f64) -> Spelt {
     let corners = [dvec3(-2.0, -1.5, 0.5), dvec3(2.0, -1.0, -0.5), dvec3(0.25, 2.0, 0.0)];
     let corners = corners.map(|corner| scale * (MIDDLE + corner));
     let [a, b, c] = corners.map(spelt);
-    let text = format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}");
-    (text, Box::new(move |ray, near| beyond(shapes::triangle(corners, &ray.into()), near)))
-}
-
-/// Returns the hit of a shape that is met at most once, if it is beyond a distance.
-fn beyond(truth: Truth, near: f64) -> Truth {
-    match truth {
-        Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
-        truth => truth,
-    }
+    with_truth(format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}"))
 }
 
 /// Returns a random point of a shape, and its normal there.

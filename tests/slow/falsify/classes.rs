@@ -8,11 +8,11 @@ mod revolved;
 mod round;
 mod solids;
 
-use super::oracle;
 use super::random::Random;
-use super::ray::Ray;
 use super::scenes::Question;
-use super::text::Scene;
+use crate::oracle::first as oracle;
+use crate::oracle::ray::Ray;
+use crate::oracle::text::Scene;
 
 /// A class of scenes.
 pub struct Class {

@@ -4,25 +4,13 @@
 //! `cargo test --release --test slow -- --ignored --nocapture many_scenes`
 
 mod classes;
-mod closed;
-mod curved;
-mod dyadic;
-mod fast;
-mod formula;
 mod looks;
-mod number;
-mod oracle;
-mod place;
 mod program;
-mod random;
-mod ray;
-mod scenes;
-mod solid;
-mod spline;
+pub mod random;
+pub mod scenes;
 mod tally;
-mod text;
-mod wide;
 
+use crate::oracle::text::Scene;
 use classes::{CLASSES, Class};
 use random::Random;
 use std::env;
@@ -36,7 +24,7 @@ use tabray::tools::threads::renderer_with;
 use tally::Tally;
 
 /// Returns the number that an environment variable is set to, or the default if it is not set.
-fn setting(name: &str, default: f64) -> f64 {
+pub fn setting(name: &str, default: f64) -> f64 {
     env::var(name).map_or(default, |value| value.parse().unwrap_or_else(|_| panic!("{name} is a number")))
 }
 
@@ -122,7 +110,7 @@ fn hits_and_proofs_of_given_scenes_are_right() {
         let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
         let mesh = Path::new(path).with_file_name("mesh.obj");
         let mesh = fs::read_to_string(mesh).unwrap_or_default();
-        let [width, height] = text::Scene::read(&text, &mesh).pixels.map(|side| side as usize);
+        let [width, height] = Scene::read(&text, &mesh).pixels.map(|side| side as usize);
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
         let question = scenes::Question { text, mesh, pixels, is_picture: true };
         let (start, mut tally) = (Instant::now(), Tally::default());

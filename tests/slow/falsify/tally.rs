@@ -1,14 +1,14 @@
 //! The results of each class: counts of hits and proofs, and of what is wrong with them.
 
 use super::classes::Class;
-use super::dyadic::Dyadic;
-use super::number::Number;
-use super::oracle::{self, Truth};
 use super::program::{Claim, Program, ProgramHit};
-use super::ray::Ray;
 use super::scenes::Question;
-use super::text::Scene;
-use super::wide::Wide;
+use crate::oracle::dyadic::Dyadic;
+use crate::oracle::first::{self as oracle, Truth};
+use crate::oracle::number::Number;
+use crate::oracle::ray::Ray;
+use crate::oracle::text::Scene;
+use crate::oracle::wide::Wide;
 use std::env;
 use std::fs;
 use std::path::Path;

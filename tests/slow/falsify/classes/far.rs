@@ -1,12 +1,12 @@
 //! Shapes far from the world's origin: what is computed from their coordinates has few digits left.
 
 use super::solids::{OPERATIONS, even, shape};
-use crate::falsify::oracle::{self, Truth};
 use crate::falsify::random::{Point, Random, moved, unit};
-use crate::falsify::ray::Ray;
 use crate::falsify::scenes::{Question, numbers};
-use crate::falsify::solid;
-use crate::falsify::text::{Scene, Shape};
+use crate::oracle::first::{self as oracle, Truth};
+use crate::oracle::ray::Ray;
+use crate::oracle::solid;
+use crate::oracle::text::{Scene, Shape};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::ptr;

@@ -1,9 +1,8 @@
 //! Solids: where a ray crosses the surface of several shapes that are combined.
 
 use super::closed::Hit;
-use super::dyadic::Dyadic;
+use super::first::{hit, order};
 use super::number::Number;
-use super::oracle::{hit, order};
 use super::ray::Ray;
 use super::text::{Operation, Shape};
 use super::wide::Wide;
@@ -51,7 +50,7 @@ fn of_one(shape: &Shape, ray: &Ray) -> Option<Vec<Wide>> {
         };
         let high = place.ends()?.1.clone();
         let behind = high.add(&high.shifted(BEHIND));
-        start = from(ray, &behind);
+        start = ray.from(&behind);
         gone = Wide::exact(&behind);
         places.push(place);
     }
@@ -82,15 +81,7 @@ pub fn crossed<'s>(shape: &'s Shape, ray: &Ray, at: &Wide) -> Option<(&'s Shape,
         return Some((shape, ray.clone(), at.clone()));
     };
     let behind = before.add(&before.shifted(BEHIND));
-    Some((shape, from(ray, &behind), at.sub(&Wide::exact(&behind))))
-}
-
-/// Returns a ray from one of its places on.
-fn from(ray: &Ray, place: &Dyadic) -> Ray {
-    let ahead = |origin: &Dyadic, dir: &Dyadic| origin.add(&dir.mul(place));
-    let origin = [0, 1, 2].map(|axis| ahead(&ray.origin[axis], &ray.dir[axis]));
-    let world_z = ray.world_z.as_ref().map(|[z, dir]| [ahead(z, dir), dir.clone()]);
-    Ray { origin, world_z, ..ray.clone() }
+    Some((shape, ray.from(&behind), at.sub(&Wide::exact(&behind))))
 }
 
 impl Operation {
@@ -106,7 +97,7 @@ impl Operation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::falsify::text::Scene;
+    use crate::oracle::text::Scene;
 
     #[test]
     fn places_are_narrow_where_the_slope_jumps_nearby() {

@@ -1,10 +1,10 @@
 //! The first hit of a ray, for certain, from the text of a scene.
 
 use super::closed::{self, Hit};
-use super::curved;
+use super::curved::{self, Roots};
 use super::dyadic::Dyadic;
 use super::fast::Fast;
-use super::formula::Formula;
+use super::formula::{Formula, Sides};
 use super::number::{Jet, Number};
 use super::ray::Ray;
 use super::solid;
@@ -94,11 +94,41 @@ pub fn hit(shape: &Shape, ray: &Ray) -> Hit {
     }
 }
 
+/// Returns what is known of the places at which a ray meets a formula's surface or a copy of it, where at most so many
+/// pieces are looked at.
+pub fn roots(shape: &Shape, ray: &Ray, most: [usize; 2]) -> Roots<Wide> {
+    match shape {
+        Shape::Placed { shape, place } => roots(shape, &place.own(ray), most),
+        Shape::Formula { own, axis, formula, kept, middle, reach } => {
+            curved::formula_roots(ray, (own, middle, *reach), axis.as_ref(), (formula, kept), most)
+        }
+        _ => panic!("no formula"),
+    }
+}
+
+/// Tells whether a formula, or a copy of its surface, is not defined at a place of a ray.
+pub fn is_undefined(shape: &Shape, ray: &Ray, place: f64) -> bool {
+    match shape {
+        Shape::Placed { shape, place: of } => is_undefined(shape, &of.own(ray), place),
+        Shape::Formula { own, formula, .. } => {
+            let there = ray.from(&Dyadic::from(place)).origin;
+            let at = [0, 1, 2].map(|axis| Jet::constant(Wide::point(&there[axis].sub(&own[axis]))));
+            formula.on(at.each_ref(), &mut Sides::default()).is_none()
+        }
+        _ => false,
+    }
+}
+
 /// Returns the approximate cosine of the angle between a ray and a shape's normal at a place: an error of the distance,
 /// times this, is the distance from the surface.
 pub fn cosine(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
+    slope(shape, ray, place).abs()
+}
+
+/// Returns that cosine, which is negative where the ray enters. Where there is no normal, it is 1.
+pub fn slope(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
     let f64s = |of: &Vector| [0, 1, 2].map(|axis| of[axis].to_f64(false));
-    let cosine = dot(unit(normal(shape, ray, place)), unit(f64s(&ray.dir))).abs();
+    let cosine = dot(unit(normal(shape, ray, place)), unit(f64s(&ray.dir)));
     if cosine.is_nan() { 1.0 } else { cosine }
 }
 
@@ -282,6 +312,42 @@ mod tests {
             let (found, at, is_tie) = seen(objects);
             assert_eq!((found, is_tie), (first, false), "{objects}");
             assert!((at - distance).abs() < 1e-14, "{objects}: {at}");
+        }
+    }
+
+    /// From z = 3 to z = -3, where x and y are 0, the first place at which a formula is defined and 0.
+    #[test]
+    fn the_oracle_knows_jumps_poles_and_the_ends_of_domains() {
+        for (formula, z) in [
+            ("floor(z) + 2.5", None),
+            ("1/z", None),
+            ("(z + 2)/y", None),
+            ("sign(z - 1.5)*(z + 1)", Some(-1.0)),
+            ("1/(1 + 1/(z - 1)) - 2", Some(-1.0)),
+            ("sqrt(z - 1) + z", None),
+            ("sqrt(z + 1) - 1", Some(0.0)),
+            ("ln(z) - ln(2)", Some(2.0)),
+            ("z^0.5 - 1.5", Some(2.25)),
+            ("cbrt(z) + 1", Some(-1.0)),
+            ("if(z >= 1, z - 2, z + 5)", Some(2.0)),
+            ("if(z < 1, z, 1/(x*z))", Some(0.0)),
+            ("mod(z, 2) - 0.5", Some(2.5)),
+            ("mod(1/z, 4) - 3", Some(1.0 / 3.0)),
+            ("atan2(z, -1) - 3", Some((std::f64::consts::PI - 3.0).tan())),
+            ("atan2(y, z) - 1", None),
+            ("tan(z) + 1", Some(0.75 * std::f64::consts::PI)),
+            ("acos(z/2) - 1", Some(2.0 * 1.0_f64.cos())),
+            ("trunc(z) + z^3/100", Some(0.0)),
+            ("smin(z, z + 1, 3) + 1", Some(-1.0 + 1.0 / 3.0)),
+        ] {
+            let text = format!("implicit i {{ formula \"{formula}\" center 4 3 -4 box -3 -3 -3 3 3 3 }}");
+            let (found, at, _) = seen(&text);
+            let found = found.map(|_| 10.0 - at);
+            let is_right = match (found, z) {
+                (Some(found), Some(z)) => (found - z).abs() < 1e-14,
+                (found, z) => found == z,
+            };
+            assert!(is_right, "{formula}: {found:?}");
         }
     }
 

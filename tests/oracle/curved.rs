@@ -4,7 +4,7 @@
 use super::closed::Hit;
 use super::dyadic::Dyadic;
 use super::fast::Fast;
-use super::formula::Formula;
+use super::formula::{Formula, Piece, Sides};
 use super::number::{Jet, Number};
 use super::ray::{Ray, cross, dot, minus};
 use super::text::Vector;
@@ -13,7 +13,8 @@ use std::cmp::Ordering;
 
 /// A function along a ray that is 0 where the ray meets a surface.
 trait Along {
-    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T>;
+    /// Evaluates the function on a piece of the ray; `None` where it is nowhere defined.
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>, sides: &mut Sides) -> Option<Piece<T>>;
     /// Tells whether roots in a piece of the ray belong to the part of the surface that is kept, if that is certain.
     fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool>;
     fn known(&self) -> &Known<Wide>;
@@ -22,51 +23,115 @@ trait Along {
 /// The coefficients of a function along a ray.
 struct Known<T>(Vec<T>);
 
-enum Search {
-    None,
-    Root(Wide),
-    Unknown,
+/// What is known of the roots of a function on a part of a ray.
+#[derive(Clone, Debug)]
+pub struct Roots<T> {
+    /// The pieces that may have roots, in their order; all before the first certain root.
+    pub open: Vec<[T; 2]>,
+    /// The first certain root.
+    pub first: Option<T>,
 }
 
-fn first_root<T: Number>(along: &impl Along, known: &Known<T>, from: T, to: T, most: usize) -> Search {
+/// The numbers of pieces that are looked at in `f64`, and in 320 bits, until a ray is given up.
+const THOROUGH: [usize; 2] = [4_000, 20_000];
+
+/// The number of pieces that may stay open.
+const MOST_OPEN: usize = 24;
+
+/// The number of jumps and poles in a piece, on all of whose sides the function is evaluated.
+const MOST_SIDES: u32 = 6;
+
+/// `is_exact` tells that a change of sign at a ledge is located as closely as is useful.
+fn roots<T: Number>(
+    along: &impl Along,
+    known: &Known<T>,
+    [from, to]: [T; 2],
+    most: usize,
+    is_exact: bool,
+) -> Roots<T> {
     let size = Number::abs(&from).max(&Number::abs(&to));
-    let mut waiting = vec![(from, to)];
+    let mut found = Roots { open: Vec::new(), first: None };
+    let mut waiting = vec![[from, to.clone()]];
     for _ in 0..most {
-        let Some((low, high)) = waiting.pop() else { return Search::None };
+        let Some([low, high]) = waiting.pop() else { return found };
         let piece = low.hull(&high);
         if along.kept(&piece, known) == Some(false) {
             continue;
         }
-        let value = |at: &T| along.at(&Jet::constant(at.clone()), known).value;
-        let all = along.at(&Jet::variable(piece.clone()), known);
-        if is_not_zero(&all.value) {
+        let mut sides = Sides::default();
+        let Some(Piece { jet, is_whole }) = along.at(&Jet::variable(piece.clone()), known, &mut sides) else {
             continue;
-        }
+        };
+        let value = |at: &T| {
+            let there = along.at(&Jet::constant(at.clone()), known, &mut Sides::default());
+            there.map_or(T::any(), |there| there.jet.value)
+        };
         let inner = piece.inner();
-        if is_not_zero(&value(&inner).add(&all.slope.mul(&piece.sub(&inner)))) {
+        if is_not_zero(&jet.value)
+            || (is_whole && is_not_zero(&value(&inner).add(&jet.slope.mul(&piece.sub(&inner)))))
+        {
             continue;
         }
-        if is_not_zero(&all.slope) {
-            match (value(&low).sign(), value(&high).sign()) {
-                (Some(one), Some(other)) if one == other && one != Ordering::Equal => continue,
-                (Some(Ordering::Less | Ordering::Greater), Some(Ordering::Less | Ordering::Greater)) => {
-                    let root = narrowed(along, known, piece.clone());
-                    match along.kept(&root, known) {
-                        Some(true) => return Search::Root(root.to_wide()),
-                        Some(false) => continue,
-                        None => return Search::Unknown,
+        let (is_narrow, is_steep) = (piece.is_narrow(&size), is_not_zero(&jet.slope));
+        if is_whole && (is_narrow && is_exact || is_steep) {
+            let root = match (value(&low).sign(), value(&high).sign()) {
+                (Some(one), Some(other)) if one == other && one != Ordering::Equal && is_steep => continue,
+                (Some(one @ (Ordering::Less | Ordering::Greater)), Some(other)) if one == other.reverse() => {
+                    if is_steep {
+                        Some(narrowed(along, known, piece.clone()))
+                    } else {
+                        Some(piece.clone())
                     }
                 }
-                _ => {}
+                _ => None,
+            };
+            match root.map(|root| (along.kept(&root, known), root)) {
+                Some((Some(true), root)) => return Roots { first: Some(root), ..found },
+                Some((Some(false), _)) => continue,
+                Some((None, root)) => {
+                    found.open.push([root.low(), root.high()]);
+                    continue;
+                }
+                None => {}
             }
         }
-        if piece.is_narrow(&size) {
-            return Search::Unknown;
+        if sides.count > 0 && is_nowhere_zero(along, known, &piece) {
+            continue;
         }
-        waiting.push((inner.clone(), high));
-        waiting.push((low, inner));
+        if is_narrow {
+            let is_full = found.open.len() == MOST_OPEN;
+            match found.open.last_mut() {
+                Some([_, end]) if !low.sub(end).sign().is_some_and(Ordering::is_gt) => *end = high,
+                _ if is_full => {
+                    found.open.push([low, to]);
+                    return found;
+                }
+                _ => found.open.push([low, high]),
+            }
+            continue;
+        }
+        waiting.push([inner.clone(), high]);
+        waiting.push([low, inner]);
     }
-    Search::Unknown
+    if let Some([low, _]) = waiting.pop() {
+        found.open.push([low, to]);
+    }
+    found
+}
+
+/// Tells whether the function is not 0 on any of the sides of its jumps and poles in a piece.
+fn is_nowhere_zero<T: Number>(along: &impl Along, known: &Known<T>, piece: &T) -> bool {
+    let mut chosen = 0_u32;
+    loop {
+        let mut sides = Sides { count: 0, chosen: Some(chosen) };
+        let side = along.at(&Jet::variable(piece.clone()), known, &mut sides);
+        if sides.count > MOST_SIDES || side.is_some_and(|side| !is_not_zero(&side.jet.value)) {
+            return false;
+        }
+        // On one side of a jump, there may be further ones: next is the other side of the last one that has one.
+        let Some(last) = (0..sides.count).rev().find(|jump| chosen >> jump & 1 == 0) else { return true };
+        chosen = chosen & ((1 << last) - 1) | 1 << last;
+    }
 }
 
 fn is_not_zero<T: Number>(of: &T) -> bool {
@@ -79,9 +144,13 @@ fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T 
     const CUTS: usize = 64;
     let mut cuts = 0;
     loop {
-        let slope = along.at(&Jet::variable(piece.clone()), known).slope;
+        let at = |of: Jet<T>| {
+            let there = along.at(&of, known, &mut Sides::default());
+            there.map_or(Jet { value: T::any(), slope: T::any() }, |there| there.jet)
+        };
+        let slope = at(Jet::variable(piece.clone())).slope;
         let inner = piece.inner();
-        let value = along.at(&Jet::constant(inner.clone()), known).value;
+        let value = at(Jet::constant(inner.clone())).value;
         let Some(next) = inner.sub(&value.div(&slope)).meet(&piece) else { return piece };
         let has_shrunk = next.is_half(&piece);
         piece = next;
@@ -89,7 +158,7 @@ fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T 
             continue;
         }
         let inner = piece.inner();
-        let value = along.at(&Jet::constant(inner.clone()), known).value;
+        let value = at(Jet::constant(inner.clone())).value;
         piece = match (value.sign(), slope.sign()) {
             _ if cuts == CUTS => return piece,
             (Some(Ordering::Less), Some(Ordering::Greater))
@@ -127,38 +196,58 @@ impl Local {
         Self { start, power, from, dir }
     }
 
-    /// Returns the first hit, searched for up to at least `reach` world units from the point at place 0.
-    fn first_hit(&self, along: &impl Along, reach: f64) -> Hit {
+    /// Returns what is known of the places ahead of the ray's origin at which the function is 0, up to at least `reach`
+    /// world units from the point at place 0.
+    /// At most so many pieces are looked at in `f64`, and in 320 bits for each piece that is then open.
+    fn roots(&self, along: &impl Along, reach: f64, [most, most_wide]: [usize; 2]) -> Roots<Wide> {
         // A step is from half a world unit to two world units long.
         let reach = 4.0 * reach;
         let begin = self.start.neg().shifted(-self.power);
         let end = Dyadic::from(reach);
         let from = if begin.compare(&end.neg()).is_gt() { begin } else { end.neg() };
         if from.compare(&end).is_ge() {
-            return Hit::Miss;
+            return Roots { open: Vec::new(), first: None };
         }
         // The search runs in `f64` first if `f64` represents the start of the range exactly.
         let known = along.known();
-        let search = match (Fast::exact(&from), Fast::exact(&end)) {
-            (one, other) if one.low == one.high && one.low.is_finite() => {
-                let fast = Known(known.0.iter().map(Fast::of).collect());
-                first_root(along, &fast, one, other, 4000)
+        let ends = [&from, &end];
+        let fast = ends.map(Fast::exact);
+        let mut found = Roots { open: vec![ends.map(Wide::point)], first: None };
+        if fast[0].is_point() && fast[0].low.is_finite() {
+            let of_fast = Known(known.0.iter().map(Fast::of).collect());
+            let Roots { open, first } = roots(along, &of_fast, fast, most, false);
+            found.open = open.iter().map(|piece| piece.each_ref().map(Fast::to_wide)).collect();
+            found.first = first.map(|root| narrowed(along, known, root.to_wide()));
+        }
+        let mut open = Vec::new();
+        for piece in found.open {
+            if most_wide == 0 {
+                open.push(piece);
+                continue;
             }
-            _ => Search::Unknown,
-        };
-        let root = match search {
-            Search::None => return Hit::Miss,
-            Search::Root(root) => narrowed(along, known, root),
-            Search::Unknown => {
-                match first_root(along, known, Wide::point(&from), Wide::point(&end), 20_000) {
-                    Search::None => return Hit::Miss,
-                    Search::Root(root) => root,
-                    Search::Unknown => return Hit::Touch,
-                }
+            let inner = roots(along, known, piece, most_wide, true);
+            open.extend(inner.open);
+            if inner.first.is_some() {
+                found.first = inner.first;
+                break;
             }
-        };
+        }
+        found.open = open;
+        found
+    }
+
+    /// Returns a place of the ray, given as one of this part of it.
+    fn place(&self, at: &Wide) -> Wide {
         let step = Wide::point(&Dyadic::int(1).shifted(self.power));
-        Hit::At(Wide::point(&self.start).add(&root.mul(&step)))
+        Wide::point(&self.start).add(&at.mul(&step))
+    }
+
+    fn first_hit(&self, along: &impl Along, reach: f64) -> Hit {
+        match self.roots(along, reach, THOROUGH) {
+            Roots { open, .. } if !open.is_empty() => Hit::Touch,
+            Roots { first: Some(root), .. } => Hit::At(self.place(&root)),
+            _ => Hit::Miss,
+        }
     }
 }
 
@@ -179,13 +268,14 @@ impl OnRevolved<'_> {
 }
 
 impl Along for OnRevolved<'_> {
-    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
+    // At a step of the profile, the surface is a ledge.
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>, _: &mut Sides) -> Option<Piece<T>> {
         let constant = |of: usize| Jet::constant(known.0[of].clone());
         let zero = Jet::constant(T::int(0));
         // Beyond the ends of the surface the profile may be anything.
         let height = Self::height(place, known).max(&zero).min(&constant(HEIGHT));
         let around = constant(2).add(&constant(3).mul(place)).add(&constant(4).mul(&place.square()));
-        around.sub(&self.profile.squared_at(&height))
+        Some(Piece::whole(around.sub(&self.profile.squared_at(&height))))
     }
 
     fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool> {
@@ -253,8 +343,8 @@ impl OnFormula<'_> {
 }
 
 impl Along for OnFormula<'_> {
-    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
-        self.formula.of(Self::variables(place, known).each_ref())
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>, sides: &mut Sides) -> Option<Piece<T>> {
+        self.formula.on(Self::variables(place, known).each_ref(), sides)
     }
 
     fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool> {
@@ -279,11 +369,26 @@ impl Along for OnFormula<'_> {
 /// Returns the first hit of a shape by its formulas, as the scene's text has them.
 pub fn by_formula(
     ray: &Ray,
-    (own, middle, reach): (&Vector, &Vector, f64),
+    at: (&Vector, &Vector, f64),
     axis: Option<&Vector>,
     formula: &Formula,
     kept: &[Formula],
 ) -> Hit {
+    match formula_roots(ray, at, axis, (formula, kept), THOROUGH) {
+        Roots { open, .. } if !open.is_empty() => Hit::Touch,
+        Roots { first: Some(place), .. } => Hit::At(place),
+        _ => Hit::Miss,
+    }
+}
+
+/// Returns what is known of the places at which a ray meets a shape by its formulas.
+pub fn formula_roots(
+    ray: &Ray,
+    (own, middle, reach): (&Vector, &Vector, f64),
+    axis: Option<&Vector>,
+    (formula, kept): (&Formula, &[Formula]),
+    most: [usize; 2],
+) -> Roots<Wide> {
     let at = [0, 1, 2].map(|of| own[of].add(&middle[of]));
     let local = Local::new(ray, &at, own);
     let (from, dir) = (&local.from, &local.dir);
@@ -308,7 +413,11 @@ pub fn by_formula(
             ]
         }
     };
-    local.first_hit(&OnFormula { formula, kept, known: Known(known) }, reach)
+    let found = local.roots(&OnFormula { formula, kept, known: Known(known) }, reach, most);
+    Roots {
+        open: found.open.iter().map(|piece| piece.each_ref().map(|end| local.place(end))).collect(),
+        first: found.first.map(|root| local.place(&root)),
+    }
 }
 
 /// A polynomial, and for some shapes a second one, which is negative where the surface is cut off.
@@ -342,13 +451,14 @@ fn moved<T: Number>(coefficients: &[T], to: &T) -> Vec<T> {
 }
 
 impl Along for OnPolynomial {
-    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>, _: &mut Sides) -> Option<Piece<T>> {
         // The polynomial is expanded about a point of the piece, so that its bounds are narrow there.
         let inner = place.value.inner();
         let from = place.value.sub(&inner);
         let all = moved(&known.0[..=self.degree], &inner);
         let slopes: Vec<T> = (1..all.len()).map(|of| all[of].mul(&T::int(of as i64))).collect();
-        Jet { value: horner(&all, &from), slope: horner(&slopes, &from).mul(&place.slope) }
+        let (value, slope) = (horner(&all, &from), horner(&slopes, &from).mul(&place.slope));
+        Some(Piece::whole(Jet { value, slope }))
     }
 
     fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool> {

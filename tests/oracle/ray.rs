@@ -33,7 +33,8 @@ impl Ray {
                 let both = Dyadic::int(of_x * of_y);
                 [0, 1, 2].map(|axis| place[axis].sub(&scene.eye[axis].mul(&both)))
             }
-            View::Ahead([forward, right, up]) => {
+            View::Ahead(vectors) => {
+                let [forward, right, up] = &**vectors;
                 // The image's edges are half a pixel beyond the outermost pixels; all times its width in pixels.
                 let [x, y] = [2 * x + 1 - width, 2 * y + 1 - height].map(Dyadic::int);
                 let part = |axis: usize| right[axis].mul(&x).add(&up[axis].mul(&y));
@@ -52,6 +53,14 @@ impl Ray {
         let does_cut = matches!(scene.view, View::Screen(_));
         let world_z = does_cut.then(|| [origin[2].clone(), dir[2].clone()]);
         Self { origin, dir, length: Wide::int(1), world_z }
+    }
+
+    /// Returns the ray from one of its places on.
+    pub fn from(&self, place: &Dyadic) -> Self {
+        let ahead = |origin: &Dyadic, dir: &Dyadic| origin.add(&dir.mul(place));
+        let origin = [0, 1, 2].map(|axis| ahead(&self.origin[axis], &self.dir[axis]));
+        let world_z = self.world_z.as_ref().map(|[z, dir]| [ahead(z, dir), dir.clone()]);
+        Self { origin, world_z, ..self.clone() }
     }
 
     /// Returns the distance of a place along the ray.

@@ -48,6 +48,16 @@ pub trait Number: Clone {
     /// Returns a point of the interval, not quite its midpoint.
     fn inner(&self) -> Self;
     fn low(&self) -> Self;
+    fn high(&self) -> Self;
+    fn atan(&self) -> Self;
+    /// Returns the interval of the integers below the ends.
+    fn floor(&self) -> Self;
+    fn half_turn() -> Self;
+    /// Returns a point that stands for infinity.
+    fn huge() -> Self;
+    fn is_point(&self) -> bool;
+    /// Tells whether no number of the interval is negative.
+    fn is_from_0(&self) -> bool;
     /// Tells whether the interval is as narrow as is useful for numbers of the magnitude of `size`.
     fn is_narrow(&self, size: &Self) -> bool;
     /// Tells whether the interval is less than half as wide as another.
@@ -57,6 +67,10 @@ pub trait Number: Clone {
 
     fn sub(&self, other: &Self) -> Self {
         self.add(&other.neg())
+    }
+
+    fn is_negative(&self) -> bool {
+        self.sign() == Some(Ordering::Less)
     }
 }
 
@@ -127,20 +141,6 @@ impl<T: Number> Jet<T> {
 
     pub fn ln(&self) -> Self {
         Self { value: self.value.ln(), slope: self.slope.div(&self.value) }
-    }
-
-    /// Raises a base that is not negative to a power.
-    pub fn power(&self, exponent: &Self) -> Self {
-        if self.value.sign() == Some(Ordering::Greater) {
-            return self.ln().mul(exponent).exp();
-        }
-        let value = self.value.ln().mul(&exponent.value).exp();
-        // A base from 0 to 1, raised to a power that is not negative, is from 0 to 1.
-        let (zero, one) = (T::int(0), T::int(1));
-        let is_small = self.value.max(&one).sub(&one).sign() == Some(Ordering::Equal);
-        let is_up = exponent.value.min(&zero).sign() == Some(Ordering::Equal);
-        let value = if is_small && is_up { value.meet(&zero.hull(&one)).unwrap_or(value) } else { value };
-        Self { value, slope: T::any() }
     }
 
     pub fn abs(&self) -> Self {

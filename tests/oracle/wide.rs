@@ -51,11 +51,6 @@ impl Wide {
         self.ends().map_or(f64::NAN, |(low, _)| low.to_f64(false))
     }
 
-    /// Returns π.
-    pub fn half_turn() -> Self {
-        Self::around(Dyadic::parts(pi().clone(), -FIXED), &tiny())
-    }
-
     pub fn low_end(&self) -> Dyadic {
         self.ends().expect("a number with ends").0.clone()
     }
@@ -216,6 +211,35 @@ fn ln(of: &Dyadic) -> Wide {
     let off = off.hull(&off).add(&square.neg().low().hull(&Wide::int(0)));
     let twos = Wide::around(Dyadic::parts(ln_two().clone(), -FIXED), &tiny()).mul(&Wide::int(size));
     Wide::point(&at).add(&off).add(&twos)
+}
+
+/// Returns bounds of the inverse tangent of a number.
+fn atan(of: &Dyadic) -> Wide {
+    if of.size() > 60 {
+        let quarter = Wide::half_turn().shifted(-1);
+        let quarter = if of.sign() == Ordering::Less { quarter.neg() } else { quarter };
+        // Of a number below 2^-60.
+        let rest = atan(&Wide::int(1).div(&Wide::point(of)).low_end());
+        let slack = Wide::around(Dyadic::zero(), &Dyadic::int(1).shifted(-BITS));
+        return quarter.sub(&rest).add(&slack);
+    }
+    // From an `f64`, atan(v) = a + atan((v cos a - sin a) / (cos a + v sin a)).
+    let number = Wide::point(of);
+    let mut at = Dyadic::from(of.to_f64(false).atan());
+    let mut rest = Wide::int(0);
+    for _ in 0..3 {
+        let (sin, cos) = Wide::point(&at).sin_cos();
+        rest = number.mul(&cos).sub(&sin).div(&cos.add(&number.mul(&sin)));
+        let step = rest.low_end();
+        if step.size() < -120 {
+            break;
+        }
+        at = at.add(&step).rounded(BITS + 20, false);
+    }
+    // atan(d) lies between d - |d|^3 and d + |d|^3.
+    let cube = rest.square().mul(&rest.abs());
+    let slack = cube.neg().low().hull(&cube.high());
+    Wide::point(&at).add(&rest).add(&slack)
 }
 
 impl Wide {
@@ -397,6 +421,41 @@ impl Number for Wide {
 
     fn low(&self) -> Self {
         Self(self.0.as_ref().map(|(low, _)| (low.clone(), low.clone())))
+    }
+
+    fn high(&self) -> Self {
+        Self(self.0.as_ref().map(|(_, high)| (high.clone(), high.clone())))
+    }
+
+    fn atan(&self) -> Self {
+        match self.ends() {
+            Some((low, high)) => atan(low).hull(&atan(high)),
+            None => {
+                let quarter = Self::half_turn().shifted(-1);
+                quarter.neg().hull(&quarter)
+            }
+        }
+    }
+
+    fn floor(&self) -> Self {
+        let floor = |of: &Dyadic| if of.size() > BITS { of.clone() } else { Dyadic::parts(of.fixed(0), 0) };
+        Self(self.ends().map(|(low, high)| (floor(low), floor(high))))
+    }
+
+    fn half_turn() -> Self {
+        Self::around(Dyadic::parts(pi().clone(), -FIXED), &tiny())
+    }
+
+    fn huge() -> Self {
+        Self(Some((huge(), huge())))
+    }
+
+    fn is_point(&self) -> bool {
+        self.ends().is_some_and(|(low, high)| low.compare(high).is_eq())
+    }
+
+    fn is_from_0(&self) -> bool {
+        self.ends().is_some_and(|(low, _)| low.sign().is_ge())
     }
 
     fn is_narrow(&self, size: &Self) -> bool {

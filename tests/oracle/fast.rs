@@ -4,6 +4,7 @@ use super::dyadic::Dyadic;
 use super::number::{Constant, Number};
 use super::wide::Wide;
 use std::cmp::Ordering;
+use std::f64::consts::PI;
 
 /// An interval. Where nothing is known, it is from minus to plus infinity.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +19,10 @@ impl Fast {
             return Self::any();
         }
         Self { low: low.next_down(), high: high.next_up() }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.low == 0.0 && self.high == 0.0
     }
 
     fn of_four([a, b, c, d]: [f64; 4]) -> Self {
@@ -55,11 +60,17 @@ impl Number for Fast {
     }
 
     fn add(&self, other: &Self) -> Self {
+        // Exact zeros remain: a ray may lie in the plane of a pole.
+        match (self.is_zero(), other.is_zero()) {
+            (true, _) => return *other,
+            (_, true) => return *self,
+            _ => {}
+        }
         Self::outward(self.low + other.low, self.high + other.high)
     }
 
     fn mul(&self, other: &Self) -> Self {
-        if (self.low == 0.0 && self.high == 0.0) || (other.low == 0.0 && other.high == 0.0) {
+        if self.is_zero() || other.is_zero() {
             return Self { low: 0.0, high: 0.0 };
         }
         let (a, b) = (self, other);
@@ -165,6 +176,34 @@ impl Number for Fast {
 
     fn low(&self) -> Self {
         Self { low: self.low, high: self.low }
+    }
+
+    fn high(&self) -> Self {
+        Self { low: self.high, high: self.high }
+    }
+
+    fn atan(&self) -> Self {
+        Self::roughly(self.low.atan(), self.high.atan())
+    }
+
+    fn floor(&self) -> Self {
+        Self { low: self.low.floor(), high: self.high.floor() }
+    }
+
+    fn half_turn() -> Self {
+        Self { low: PI, high: PI.next_up() }
+    }
+
+    fn huge() -> Self {
+        Self { low: f64::INFINITY, high: f64::INFINITY }
+    }
+
+    fn is_point(&self) -> bool {
+        self.low == self.high
+    }
+
+    fn is_from_0(&self) -> bool {
+        self.low >= 0.0
     }
 
     fn is_narrow(&self, size: &Self) -> bool {

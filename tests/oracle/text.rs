@@ -26,7 +26,7 @@ pub enum View {
     Screen([Dyadic; 2]),
     /// An image around the line of sight: the vector to its middle, and from there to the middle of its right edge and as
     /// far up.
-    Ahead([Vector; 3]),
+    Ahead(Box<[Vector; 3]>),
 }
 
 /// An object, with its numbers as the text has them.
@@ -111,7 +111,7 @@ impl View {
         let half = sin.divided(&cos, BITS, false);
         let up = times(&cross(&right, &forward), &half.divided(&wide, BITS, false));
         let right = times(&right, &half.mul(&far).divided(&wide, BITS, false));
-        Self::Ahead([forward, right, up])
+        Self::Ahead(Box::new([forward, right, up]))
     }
 }
 
