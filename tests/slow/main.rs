@@ -12,10 +12,12 @@ mod chart;
 mod choose;
 mod copy;
 mod emitted;
+mod extremes;
 mod falsify;
 #[cfg(feature = "fuzz")]
 mod fuzz;
 mod gallery;
+mod grammar;
 mod habits;
 mod mesh_files;
 mod mesh_table;
