@@ -3,6 +3,7 @@
 mod certain;
 mod sampling;
 
+use crate::command::{Command, Group, Run};
 use crate::files::{input, output};
 use crate::options::{cpu, method, set};
 use crate::process::failure::{Failure, print};
@@ -70,7 +71,11 @@ fn size(text: &str) -> Result<[usize; 2], String> {
     sides.ok_or_else(|| "give the width and height as `160x120`, each from 2 to 4096".to_owned())
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("bench", Group::Measuring, &Run(run)).placed(3, 21)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let cpu = args.cpu.cpu()?;
     let accuracy = args.method.accuracy()?;
     let mut models = Vec::new();

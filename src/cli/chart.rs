@@ -1,6 +1,7 @@
 //! `tabray chart`: the cost and the error of each choice in a scene.
 
 use super::measuring::{Time, Work, wait};
+use crate::command::{Command, Group, Run};
 use crate::files::input::{self, Source};
 use crate::files::output::{self, Output};
 use crate::options::{scene, stop};
@@ -51,7 +52,11 @@ const LIMIT: Duration = Duration::from_secs(120);
 
 const NOTHING: &str = "nothing has been measured yet";
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("chart", Group::Measuring, &Run(run)).placed(1, 15)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let source = args.scene.read()?;

@@ -1,5 +1,6 @@
 //! `tabray check`: reports the faults of scenes.
 
+use crate::command::{Command, Group, Run};
 use crate::files::{folders, input};
 use crate::options::set;
 use crate::process::failure::{Failure, report, status};
@@ -28,7 +29,11 @@ Examples:
   tabray check ball.ray
   tabray check *.ray --message-format short";
 
-pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("check", Group::Scenes, &Run(run)).placed(2, 7)
+}
+
+fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     folders::open(&mut args.scenes)?;
     let mut worst = 0;
     for scene in &args.scenes {

@@ -2,6 +2,7 @@
 
 use super::chart::all_accuracies;
 use super::measuring::{Work, wait};
+use crate::command::{Command, Group, Run};
 use crate::files::input;
 use crate::options::max_error::{LEVELS, MaxError, levels};
 use crate::options::{scene, set, stop};
@@ -74,7 +75,11 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("choose", Group::Measuring, &Run(run)).placed(0, 16)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();

@@ -1,5 +1,7 @@
 //! `tabray completions`: scripts with which shells complete the command line.
 
+use crate::command::{Command, Group, Run};
+use crate::line;
 use crate::process::failure::{Failure, print};
 use crate::process::program;
 use clap_complete::Shell;
@@ -18,11 +20,15 @@ Examples:
   tabray completions bash > ~/.local/share/bash-completion/completions/tabray
   tabray completions fish > ~/.config/fish/completions/tabray.fish";
 
-pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("completions", Group::Tools, &Run(run)).placed(3, 27)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(
         args.shell,
-        &mut program::described(command, registry),
+        &mut program::described(line(), registry),
         program::name(),
         &mut script,
     );

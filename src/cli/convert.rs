@@ -1,5 +1,6 @@
 //! `tabray convert`: writes a scene in the other syntax, or what a file of another program shows as a scene.
 
+use crate::command::{Command, Group, Run};
 use crate::files::input::Source;
 use crate::files::{input, output};
 use crate::options::named::by_name;
@@ -42,7 +43,11 @@ Examples:
   tabray convert barth.jsurf barth.ray     # a surface of SURFER
   tabray convert barth.pic barth.ray       # a script of surf";
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("convert", Group::Scenes, &Run(run)).placed(4, 5)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let syntax = syntax(&args)?;
     let mut source = args.scene.read()?;
     let imported = imported(&source)?;

@@ -2,6 +2,7 @@
 
 use super::explain::Place;
 use super::report::{Change, Item, Page};
+use crate::command::{Command, Group, Run};
 use crate::files::input;
 use crate::files::picture::Picture;
 use crate::options::number::whole;
@@ -59,8 +60,12 @@ Examples:
   tabray diff old.png new.png --tolerance 1 -o diff.html --scene ball.ray";
 
 /// Compares two images. The exit status distinguishes errors of any kind from a difference, as with `diff` and `cmp`.
-pub fn run(registry: &Registry, args: &Args) -> ExitCode {
-    match compare(registry, args) {
+inventory::submit! {
+    Command::new("diff", Group::Inside, &Run(run)).placed(2, 17)
+}
+
+fn run(registry: &Registry, args: Args) -> ExitCode {
+    match compare(registry, &args) {
         Ok(same) => ExitCode::from(u8::from(!same)),
         Err(failure) => {
             report(&failure);

@@ -1,5 +1,6 @@
 //! `tabray dump`: a scene as the program understands it.
 
+use crate::command::{Command, Group, Run};
 use crate::options::scene;
 use crate::process::failure::{Failure, print, print_scene};
 use tabray_lang::dump;
@@ -33,7 +34,11 @@ enum Format {
     Toml,
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("dump", Group::Scenes, &Run(run)).placed(6, 4)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = args.scene.load(registry, None)?;
     match args.format {
         Format::Notes => print(&dump::notes(&model)),

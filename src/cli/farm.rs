@@ -5,7 +5,8 @@ mod job;
 mod kubernetes;
 mod slurm;
 
-use crate::command;
+use crate::command::{Command, Group, Run};
+use crate::line;
 use crate::options::number::whole;
 use crate::process::failure::{Failure, print};
 use crate::process::messages;
@@ -89,7 +90,11 @@ struct Order {
     options: Vec<String>,
 }
 
-pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("farm", Group::Rendering, &Run(run)).placed(4, 3)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     match &args.engine {
         Engine::Slurm(order) => slurm::write(&order.checked(registry)?, &program()?),
         Engine::Commands { order, container } => {
@@ -140,7 +145,7 @@ impl Order {
         image_option.push(output);
         let files = [image_option, "--".into(), scene.into()];
         let words = words.into_iter().chain(given).chain(files);
-        let matches = command().try_get_matches_from(words).unwrap_or_else(|error| error.exit());
+        let matches = line().try_get_matches_from(words).unwrap_or_else(|error| error.exit());
         let args = matches.subcommand_matches("render").map(render::Args::from_arg_matches);
         let Some(Ok(args)) = args else { return Err(Failure::Told) };
         let is_film = args.check(registry)?;

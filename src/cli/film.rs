@@ -1,5 +1,6 @@
 //! `tabray film`: puts frames together to a contact sheet and to an animation.
 
+use crate::command::{Command, Group, Run};
 use crate::files::output::{self, Output};
 use crate::files::paths::are_same;
 use crate::files::picture;
@@ -16,6 +17,7 @@ use std::path::{Path, PathBuf};
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
 use tabray_core::text;
+use tabray_lang::registry::Registry;
 
 /// The maximum number of frames on a contact sheet.
 const ON_SHEET: usize = 100;
@@ -48,7 +50,11 @@ Examples:
   tabray film film.png --sheet sheet.png
   tabray film film.png --animation film.apng --rate 30";
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("film", Group::Rendering, &Run(run)).placed(3, 2)
+}
+
+fn run(_: &Registry, args: Args) -> Result<(), Failure> {
     if let Some(path) = &args.animation {
         refuse_name(path)?;
     }

@@ -1,5 +1,6 @@
 //! `tabray fmt`: formats scenes.
 
+use crate::command::{Command, Group, Run};
 use crate::files::{input, output};
 use crate::process::failure::{Failure, print_scene, report, status};
 use crate::process::messages;
@@ -29,7 +30,11 @@ Examples:
   tabray fmt --check *.ray
   tabray fmt - < ball.ray";
 
-pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("fmt", Group::Scenes, &Run(run)).placed(3, 8)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut worst = 0;
     for scene in &args.scenes {
         let failure = match one(registry, scene, args.check) {

@@ -1,5 +1,6 @@
 //! `tabray grade`: compares a picture with what its scene shows, and says in what way it differs.
 
+use crate::command::{Command, Group, Run};
 use crate::files::input;
 use crate::files::picture;
 use crate::options::number::whole;
@@ -65,8 +66,12 @@ const EXAMPLES: &str = concat!(
 );
 
 /// Grades a picture. The exit status distinguishes errors of any kind from a difference, as with `diff`.
-pub fn run(registry: &Registry, args: &Args) -> ExitCode {
-    match graded(registry, args) {
+inventory::submit! {
+    Command::new("grade", Group::Inside, &Run(run)).placed(3, 18)
+}
+
+fn run(registry: &Registry, args: Args) -> ExitCode {
+    match graded(registry, &args) {
         Ok(is_same) => ExitCode::from(u8::from(!is_same)),
         Err(failure) => {
             report(&failure);

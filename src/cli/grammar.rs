@@ -1,5 +1,6 @@
 //! `tabray grammar`: a grammar with which editors colour scenes in the notes' syntax.
 
+use crate::command::{Command, Group, Run};
 use crate::process::failure::{Failure, print};
 use tabray_core::text;
 use tabray_lang::grammar;
@@ -14,6 +15,10 @@ const EXAMPLES: &str = "\
 Examples:
   tabray grammar > ray.tmLanguage.json";
 
-pub fn run(registry: &Registry) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("grammar", Group::Tools, &Run(run)).placed(2, 25)
+}
+
+fn run(registry: &Registry, _: Args) -> Result<(), Failure> {
     print(&text::json_in_lines(&grammar::of(registry)))
 }

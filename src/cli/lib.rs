@@ -5,6 +5,7 @@ mod bench;
 mod chart;
 mod check;
 mod choose;
+pub mod command;
 mod completions;
 mod convert;
 mod course;
@@ -44,12 +45,16 @@ mod serve;
 mod verify;
 mod watch;
 
+pub use clap;
+pub use command::{Command, Group, Run};
 pub use heap::Heap;
+pub use process::failure::{Failure, print};
 
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser};
+use command::Outcome;
 #[cfg(target_os = "linux")]
 use nix::sys::signal::{SigSet, Signal};
-use process::failure::{Failure, report};
+use process::failure::report;
 #[cfg(target_os = "linux")]
 use process::interrupt;
 use process::messages::Told;
@@ -66,8 +71,6 @@ use tabray_lang::registry::Registry;
 #[derive(Parser)]
 #[command(name = "tabray", version, after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
 struct Cli {
-    #[command(subcommand)]
-    command: Option<Command>,
     /// The format of messages
     #[arg(long, global = true, value_name = "FORM", default_value = "human")]
     message_format: messages::Form,
@@ -82,39 +85,6 @@ struct Cli {
     color: color::Color,
     #[command(flatten)]
     bounds: bounds::Args,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    Render(Box<render::Args>),
-    Merge(merge::Args),
-    Film(film::Args),
-    Farm(farm::Args),
-    Dump(dump::Args),
-    Convert(convert::Args),
-    Mesh(mesh::Args),
-    Check(check::Args),
-    Fmt(fmt::Args),
-    Plan(plan::Args),
-    Probe(probe::Args),
-    Hits(Box<hits::Args>),
-    Judge(hits::judge::Args),
-    Hard(hits::hard::Args),
-    Verify(verify::Args),
-    Chart(chart::Args),
-    Choose(choose::Args),
-    Diff(diff::Args),
-    Grade(grade::Args),
-    Review(review::Args),
-    Watch(watch::Args),
-    Bench(bench::Args),
-    List(list::Args),
-    New(new::Args),
-    Schema(schema::Args),
-    Grammar(grammar::Args),
-    Lsp(lsp::Args),
-    Completions(completions::Args),
-    Man(man::Args),
 }
 
 macro_rules! exit_status {
@@ -141,8 +111,8 @@ const EXAMPLES: &str = concat!(
 );
 
 /// Returns the command line, under the name of the running program.
-fn command() -> clap::Command {
-    help::grouped(program::named(Cli::command()))
+pub(crate) fn line() -> clap::Command {
+    help::grouped(program::named(command::with_all(Cli::command())))
 }
 
 /// Runs the command that the program's arguments name, with every plugin that is linked in. Messages go to standard
@@ -160,13 +130,17 @@ pub fn run() -> ExitCode {
 }
 
 fn chosen() -> ExitCode {
-    let matches = match arguments::matches(command()) {
+    if let Some(faults) = command::contradictions() {
+        return refused(faults);
+    }
+    let matches = match arguments::matches(line()) {
         Ok(matches) => matches,
         Err(failure) => return report(&failure),
     };
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     color::choose(cli.color);
-    let told = match (cli.quiet, &cli.command) {
+    let chosen = matches.subcommand();
+    let told = match (cli.quiet, chosen) {
         (false, _) => Told::All,
         (true, Some(_)) => Told::ErrorsAndWarnings,
         (true, None) => Told::Errors,
@@ -176,52 +150,26 @@ fn chosen() -> ExitCode {
     if let Err(failure) = cli.bounds.keep() {
         return report(&failure);
     }
-    let outcome = match Registry::get() {
-        Ok(registry) => match cli.command {
-            Some(Command::Render(args)) => render::run(registry, *args),
-            Some(Command::Merge(args)) => merge::run(&args),
-            Some(Command::Film(args)) => film::run(&args),
-            Some(Command::Farm(args)) => farm::run(registry, &args),
-            Some(Command::Dump(args)) => dump::run(registry, args),
-            Some(Command::Convert(args)) => convert::run(registry, args),
-            Some(Command::Mesh(args)) => mesh::run(registry, &args),
-            Some(Command::Check(args)) => check::run(registry, args),
-            Some(Command::Fmt(args)) => fmt::run(registry, &args),
-            Some(Command::Plan(args)) => plan::run(registry, args),
-            Some(Command::Probe(args)) => probe::run(registry, args),
-            Some(Command::Hits(args)) => hits::run(registry, *args),
-            Some(Command::Judge(args)) => hits::judge::run(registry, args),
-            Some(Command::Hard(args)) => hits::hard::run(registry, args),
-            Some(Command::Verify(args)) => verify::run(registry, args),
-            Some(Command::Chart(args)) => chart::run(registry, args),
-            Some(Command::Choose(args)) => choose::run(registry, args),
-            Some(Command::Diff(args)) => return diff::run(registry, &args),
-            Some(Command::Grade(args)) => return grade::run(registry, &args),
-            Some(Command::Review(args)) => review::run(registry, &args),
-            Some(Command::Watch(args)) => watch::run(registry, args),
-            Some(Command::Bench(args)) => bench::run(registry, args),
-            Some(Command::List(args)) => list::run(registry, args),
-            Some(Command::New(args)) => new::run(registry, &args),
-            Some(Command::Schema(_)) => schema::run(registry),
-            Some(Command::Grammar(_)) => grammar::run(registry),
-            Some(Command::Lsp(_)) => lsp::run(registry),
-            Some(Command::Completions(args)) => completions::run(registry, &args, command()),
-            Some(Command::Man(args)) => man::run(registry, &args, command()),
-            None if io::stdin().is_terminal() => {
-                let _ = write!(io::stderr(), "{}", command().render_long_help());
-                Err(Failure::Told)
-            }
-            None => notes::run(registry),
-        },
-        Err(faults) => {
-            faults.lines().for_each(|fault| messages::error(fault, None));
-            return ExitCode::from(1);
-        }
+    let registry = match Registry::get() {
+        Ok(registry) => registry,
+        Err(faults) => return refused(faults),
     };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => report(&failure),
+    match chosen {
+        Some((name, matches)) => {
+            Command::named(name).expect("clap knows the registered commands alone").run(registry, matches)
+        }
+        None if io::stdin().is_terminal() => {
+            let _ = write!(io::stderr(), "{}", line().render_long_help());
+            report(&Failure::Told)
+        }
+        None => notes::run(registry).exit_code(),
     }
+}
+
+/// Prints the contradictions of what plugins register.
+fn refused(faults: &str) -> ExitCode {
+    faults.lines().for_each(|fault| messages::error(fault, None));
+    ExitCode::from(1)
 }
 
 // Tests read scenes, and so need entity types.

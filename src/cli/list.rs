@@ -1,5 +1,6 @@
 //! `tabray list`: the entity types and their attributes, from their tables, and what the file of a mesh holds.
 
+use crate::command::{Command, Group, Run};
 use crate::files::mesh;
 use crate::process::failure::{Failure, print};
 use crate::process::program;
@@ -35,7 +36,11 @@ Examples:
   tabray list part.stl
   tabray list --json";
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("list", Group::Scenes, &Run(run)).placed(1, 22)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if args.markdown {
         return print(&reference::markdown(registry));
     }

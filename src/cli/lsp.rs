@@ -6,6 +6,7 @@ mod faults;
 mod protocol;
 mod transport;
 
+use crate::command::{Command, Group, Run};
 use crate::process::crash;
 use crate::process::failure::Failure;
 use answers::Server;
@@ -31,7 +32,11 @@ pub struct Args {
     stdio: bool,
 }
 
-pub fn run(registry: &Registry) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("lsp", Group::Tools, &Run(run)).placed(0, 26)
+}
+
+fn run(registry: &Registry, _: Args) -> Result<(), Failure> {
     // Messages are written on a thread of their own, so that a slow editor does not block the reader.
     let (sender, texts) = mpsc::channel();
     let writer = thread::spawn(|| write(texts));

@@ -1,9 +1,10 @@
 //! `tabray man`: manual pages, as packages install them.
 
+use crate::command::{Command, Group, Run};
 use crate::files::output;
+use crate::line;
 use crate::process::failure::Failure;
 use crate::process::{messages, program};
-use clap::Command;
 use clap_mangen::Man;
 use std::path::{Path, PathBuf};
 use tabray_core::text;
@@ -21,10 +22,14 @@ const EXAMPLES: &str = "\
 Examples:
   tabray man ~/.local/share/man/man1";
 
-pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("man", Group::Tools, &Run(run)).placed(4, 28)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let folder = &args.folder;
     output::create_folder(folder)?;
-    let mut command = program::described(command, registry).disable_help_subcommand(true);
+    let mut command = program::described(line(), registry).disable_help_subcommand(true);
     command.build();
     let count = pages(command, folder)?;
     messages::note(&format!("wrote {count} pages to {}", text::shown(folder)));
@@ -32,7 +37,7 @@ pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(
 }
 
 /// Writes the page of a command and those of its subcommands; returns the number of pages.
-fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
+fn pages(command: clap::Command, folder: &Path) -> Result<usize, Failure> {
     let mut count = 1;
     for command in command.get_subcommands() {
         count += pages(command.clone(), folder)?;

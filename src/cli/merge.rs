@@ -1,5 +1,6 @@
 //! `tabray merge`: puts an image together from its parts.
 
+use crate::command::{Command, Group, Run};
 use crate::files::output::{self, Output};
 use crate::files::paths::are_same;
 use crate::options::threads;
@@ -21,6 +22,7 @@ use tabray_core::output::picture::Format;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TILE;
 use tabray_core::text;
+use tabray_lang::registry::Registry;
 use tabray_tools::pixels::{self, PixelFormat, Reader};
 
 /// The maximum number of parts that are named in a message.
@@ -50,7 +52,11 @@ Examples:
   tabray merge big.png --remove-parts
   tabray merge big.png node1/big.png.part-* node2/big.png.part-*";
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("merge", Group::Rendering, &Run(run)).placed(2, 1)
+}
+
+fn run(_: &Registry, args: Args) -> Result<(), Failure> {
     let is_full_range = FullRange::of(&args.image).is_some();
     let renderer = args.threads.renderer()?;
     let is_main = |what: PixelFormat| !matches!(what, PixelFormat::Beside(..));

@@ -1,5 +1,6 @@
 //! `tabray mesh`: writes an object of a scene as a closed mesh of triangles.
 
+use crate::command::{Command, Group, Run};
 use crate::files::output::{self, Output};
 use crate::options::named::{Value, by_name};
 use crate::options::{scene, threads};
@@ -67,8 +68,12 @@ impl Value for Format {
     }
 }
 
-pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
-    let Args { output, name, .. } = args;
+inventory::submit! {
+    Command::new("mesh", Group::Scenes, &Run(run)).placed(5, 6)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let Args { output, name, .. } = &args;
     let format = args.format.or_else(|| Format::of_name(output)).ok_or_else(|| {
         let message = format!("the name `{}` does not determine the format of the mesh", shown(output));
         Failure::usage(message).help("end it in .stl, .obj or .ply, or give `--format`")

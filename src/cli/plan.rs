@@ -1,5 +1,6 @@
 //! `tabray plan`: how a scene would be rendered, and why.
 
+use crate::command::{Command, Group, Run};
 use crate::options::{keep, method, samples, scene};
 use crate::process::failure::{Failure, print};
 use tabray_core::render::decisions::{self, Decision};
@@ -26,7 +27,11 @@ Examples:
   tabray plan ball.ray
   tabray plan ball.ray --samples 4..64";
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("plan", Group::Inside, &Run(run)).placed(0, 9)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut model = args.scene.load(registry, args.method.accuracy()?)?;
     args.samples.apply(&mut model.camera.value)?;
     print(&text(&args.keep.plan(&model)))

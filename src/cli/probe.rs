@@ -1,5 +1,6 @@
 //! `tabray probe`: explains one pixel.
 
+use crate::command::{Command, Group, Run};
 use crate::options::{method, scene};
 use crate::process::failure::Failure;
 use crate::process::visible::Visible;
@@ -42,7 +43,11 @@ fn place(text: &str) -> Result<i64, String> {
     text.parse().map_err(|_| "give the pixel's column and row as whole numbers".to_owned())
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("probe", Group::Inside, &Run(run)).placed(1, 10)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = args.scene.load(registry, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());

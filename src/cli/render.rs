@@ -1,6 +1,7 @@
 //! `tabray render`: renders a scene's image.
 
 use super::course::Differences;
+use crate::command::{Command, Group, Run};
 use crate::files::input::Source;
 use crate::files::output::{Output, format_of};
 use crate::files::{folders, input, output, provenance, several};
@@ -95,7 +96,11 @@ Examples:
   tabray render ball.ray -o film.png --frames 1..100 --sweep ball.radius=1..2
   tabray render ball.ray -o big.png --part 1/4             # then 2/4 to 4/4, and `merge`";
 
-pub fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("render", Group::Rendering, &Run(run)).placed(0, 0)
+}
+
+fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
     args.samples.tell_max_error();
     // The images of a folder's scenes go to a folder, however many there are.
     let is_folder = folders::open(&mut args.scenes)?;

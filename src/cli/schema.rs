@@ -1,5 +1,6 @@
 //! `tabray schema`: a schema with which editors check and complete scenes in TOML.
 
+use crate::command::{Command, Group, Run};
 use crate::process::failure::{Failure, print};
 use tabray_core::text;
 use tabray_lang::registry::Registry;
@@ -14,6 +15,10 @@ const EXAMPLES: &str = "\
 Examples:
   tabray schema > tabray.schema.json";
 
-pub fn run(registry: &Registry) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("schema", Group::Tools, &Run(run)).placed(1, 24)
+}
+
+fn run(registry: &Registry, _: Args) -> Result<(), Failure> {
     print(&text::json_in_lines(&schema::of(registry)))
 }

@@ -4,6 +4,7 @@ mod colours;
 mod form;
 mod objects;
 
+use crate::command::{Command, Group, Run};
 use crate::files::output::{self, Output, format_by_name};
 use crate::options::{method, scene, threads};
 use crate::process::failure::Failure;
@@ -64,7 +65,11 @@ Examples:
   tabray verify ball.ray --json
   tabray verify ball.ray --colours";
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("verify", Group::Measuring, &Run(run)).placed(2, 14)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = args.scene.load(registry, args.method.accuracy()?)?;
     interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
     let picture = match args.output {

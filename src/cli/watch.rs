@@ -15,6 +15,7 @@ mod watched;
 
 use super::serve::reach::Reach;
 use super::serve::{Server, Work};
+use crate::command::{Command, Group, Run};
 use crate::files::input;
 use crate::options::{method, set};
 use crate::process::failure::{self, Failure};
@@ -80,7 +81,11 @@ enum Event {
     ServerFailed(String),
 }
 
-pub fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("watch", Group::Rendering, &Run(run)).placed(1, 20)
+}
+
+fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     if args.scenes.iter().any(|scene| input::is_standard(scene)) {
         return Err(Failure::usage("standard input cannot be watched").help("name the scene's file"));
     }

@@ -51,7 +51,7 @@ pub fn build(name: &str, more: Files) -> Built {
     // The copy that cannot be built is made in the same place, so the programs are kept elsewhere.
     let programs = base().join(name);
     fs::create_dir_all(&programs).expect("room for a folder");
-    for program in ["tabray", "contracts", "rival", "example-plugin"] {
+    for program in ["tabray", "contracts", "count", "rival", "twin", "example-plugin"] {
         fs::copy(base().join("copy-target/debug").join(program), programs.join(program)).expect("a program");
     }
     drop(lock);

@@ -61,6 +61,7 @@ static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
     }
     files.insert(PathBuf::from("src/bin/contracts.rs"), CONTRACTS.into());
     files.insert(PathBuf::from("src/bin/rival.rs"), RIVAL.into());
+    files.insert(PathBuf::from("src/bin/twin.rs"), TWIN.into());
     files.extend(NEW.iter().map(|(path, bytes)| (path.clone(), bytes.clone())));
     files
 });
@@ -85,7 +86,7 @@ static NEW: LazyLock<Files> = LazyLock::new(|| {
     for folder in ["plugins", "scenes/entities", "scenes/revsurf", "scenes/wrong"] {
         fs::create_dir_all(checkout.path().join(folder)).expect("room for a folder");
     }
-    for (kind, name, _) in KINDS {
+    for (kind, name) in KINDS.map(|(kind, name, _)| (kind, name)).into_iter().chain([("command", "count")]) {
         let new = Command::new(env!("CARGO_BIN_EXE_tabray"))
             .args(["new", "plugin", name, "--kind", kind])
             .current_dir(checkout.path())
@@ -324,6 +325,33 @@ fn a_new_plugins_mistake_is_one() {
     assert_eq!(mistakes, 4, "of a shape, of a light, of a shader and of a camera");
 }
 
+// A command more
+
+#[test]
+fn a_new_command_works_and_is_listed_in_its_group() {
+    let scene = BUILT.scene("counted", &block_with(&page(), "brick low"));
+    assert_eq!(BUILT.prints_of("count", &["count", scene.to_str().expect("a path in UTF-8")]), "4 objects\n");
+    let help = BUILT.prints_of("count", &["--help"]);
+    let (_, inside) = help.split_once("\nLooking inside:\n").expect("the group");
+    let (inside, _) = inside.split_once("\n\n").expect("the group ends");
+    assert!(inside.ends_with("\n  count        Count the objects of a scene"), "{inside}");
+    assert!(BUILT.prints_of("count", &["completions", "bash"]).contains("count__subcmd__count"));
+}
+
+#[test]
+fn the_page_has_the_command_that_is_written() {
+    let text = String::from_utf8_lossy(&NEW[Path::new("src/bin/count.rs")]);
+    assert_eq!(block_with(&page(), "Run(run)"), text);
+    assert!(text.lines().count() <= 30, "it is short");
+}
+
+#[test]
+fn a_command_of_a_taken_name_is_refused_with_both_places() {
+    let said = BUILT.says_of("twin", &["list"], "");
+    assert!(said.starts_with("error: the command `render` is registered twice, at src/"), "{said}");
+    assert!(said.contains("src/bin/twin.rs:9") && said.contains("src/cli/render.rs:"), "{said}");
+}
+
 // A separate crate
 
 #[test]
@@ -387,6 +415,25 @@ inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreac
 inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
 inventory::submit! { Profile::new(\"crooked\", \"no formula\", \"2 +\") }
 inventory::submit! { Entity::shader(\"checks\", \"its number is that of tiles\", &[], |_| unreachable!()).on_plane(0) }
+";
+
+/// A program with a command that claims the name of another.
+const TWIN: &str = "//! What others have already.
+
+use tabray::cli::{self, Command, Group, Run, clap};
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}
+
+tabray::prelude::inventory::submit! { Command::new(\"render\", Group::Tools, &Run(nothing)) }
+
+#[derive(clap::Args)]
+struct Args {}
+
+fn nothing(_: &tabray::scene::Registry, _: Args) -> std::process::ExitCode {
+    std::process::ExitCode::SUCCESS
+}
 ";
 
 /// A plugin in `plugins/` may call the core `crate`.

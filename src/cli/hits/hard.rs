@@ -2,6 +2,7 @@
 
 use super::files::{To, of_name};
 use super::model;
+use crate::command::{Command, Group, Run};
 use crate::files::output::{self, Output};
 use crate::options::number::whole;
 use crate::options::{set, threads};
@@ -51,7 +52,11 @@ Examples:
   tabray hard ball.ray -n 100000 -o rays.csv
   tabray hard part.stl --seed 2 --to jsonl";
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("hard", Group::Rays, &Run(run)).placed(2, 13)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let format = match &args.output {
         None => args.to.format(),
         Some(path) => of_name(path)?,

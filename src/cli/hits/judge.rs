@@ -2,6 +2,7 @@
 
 use super::files::{name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
 use super::model;
+use crate::command::{Command, Group, Run};
 use crate::files::output::{self, Output, format_by_name};
 use crate::options::{set, threads};
 use crate::process::failure::{Failure, print};
@@ -74,7 +75,11 @@ fn part(text: &str) -> Result<f64, String> {
 /// The place of a wrong answer.
 type Dot = (DVec3, Finding);
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("judge", Group::Rays, &Run(run)).placed(1, 12)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = args.answers.as_deref().unwrap_or(Path::new("-"));
     refuse_two_on_standard_input(&args.scene, path, "answers")?;
     let model = model::load(registry, &args.scene, &args.set, Some(Accuracy::Exact))?;

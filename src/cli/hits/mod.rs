@@ -5,6 +5,7 @@ pub mod hard;
 pub mod judge;
 mod model;
 
+use crate::command::{Command, Group, Run};
 use crate::files::output::{self, Output};
 use crate::options::{method, set, threads};
 use crate::process::failure::Failure;
@@ -122,7 +123,11 @@ fn end(text: &str) -> Result<f64, String> {
     end.ok_or_else(|| "give a positive number".to_owned())
 }
 
-pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("hits", Group::Rays, &Run(run)).placed(0, 11)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let format = match &args.output {
         None => args.to.format(),
         Some(path) => of_name(path)?,

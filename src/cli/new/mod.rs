@@ -4,6 +4,7 @@ mod mesh_scene;
 mod plugin;
 mod scene;
 
+use crate::command::{Command, Group, Run};
 use crate::process::failure::Failure;
 use tabray_lang::registry::Registry;
 
@@ -28,7 +29,11 @@ enum Subcommand {
     Plugin(plugin::Args),
 }
 
-pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("new", Group::Scenes, &Run(run)).placed(0, 23)
+}
+
+fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     match &args.subcommand {
         Subcommand::Scene(args) => scene::run(registry, args),
         Subcommand::Plugin(args) => plugin::run(registry, args),

@@ -1,5 +1,6 @@
 //! `tabray new plugin`: a working plugin, and its scenes.
 
+use crate::command::Command;
 use crate::files::output;
 use crate::process::failure::Failure;
 use crate::process::messages;
@@ -19,7 +20,7 @@ use tabray_lang::registry::Registry;
 pub struct Args {
     /// Its name in scenes: lower-case letters, digits and `_`
     name: String,
-    /// What it adds to the language
+    /// What it adds to the language, or to the command line
     #[arg(long, default_value = "shape")]
     kind: Kind,
 }
@@ -41,6 +42,8 @@ enum Kind {
     Profile,
     /// An entity type of cameras
     Camera,
+    /// A program with one more command
+    Command,
 }
 
 /// A file to write: its path, in which `NAME` stands for the plugin's name, and the text that it starts with.
@@ -75,6 +78,7 @@ impl Kind {
                 ("plugins/NAME.rs", include_str!("templates/profile.rs")),
                 ("scenes/revsurf/NAME.ray", include_str!("templates/profile.ray")),
             ],
+            Self::Command => &[("src/bin/NAME.rs", include_str!("templates/command.rs"))],
         }
     }
 }
@@ -86,20 +90,23 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     is_checkout()?;
     let name = args.name.as_str();
     let templates = args.kind.templates();
-    is_free(registry, name, templates[0].1)?;
+    is_free(registry, name, args.kind)?;
     let files: Vec<_> =
         templates.iter().map(|(path, text)| (path.replace("NAME", name), named(text, name))).collect();
     for (path, _) in &files {
         output::refuse_existing(Path::new(path))?;
     }
     for (path, text) in &files {
+        output::create_folder(Path::new(path).parent().unwrap_or(Path::new(".")))?;
         output::create(Path::new(path), text)?;
         messages::note(&format!("wrote {path}"));
     }
-    messages::note(&format!(
-        "render it with `cargo run --release -- render {}`; docs/plugins.md lists what else belongs to a plugin",
-        files[1].0
-    ));
+    messages::note(&match files.get(1) {
+        Some((scene, _)) => format!(
+            "render it with `cargo run --release -- render {scene}`; docs/plugins.md lists what else belongs to a plugin"
+        ),
+        None => format!("try it with `cargo run --release --bin {name} -- {name} SCENE`"),
+    });
     Ok(())
 }
 
@@ -132,7 +139,7 @@ fn is_checkout() -> Result<(), Failure> {
 const OWN_FILES: [&str; 2] = ["build", "lib"];
 
 /// Checks that a plugin can have this name.
-fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failure> {
+fn is_free(registry: &Registry, name: &str, kind: Kind) -> Result<(), Failure> {
     let no_name = |what: String| {
         let help = "a plugin's name must be a Rust module name, such as `tiled_plane`";
         Err(Failure::usage(what).help(help))
@@ -150,7 +157,10 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
         format!("the entity type `{name}` already exists, at {}", entity.place())
     } else if <&Profile>::all().iter().any(|profile| profile.option().name == name) {
         format!("the profile `{name}` already exists")
-    } else if template.split(|c: char| !c.is_alphanumeric()).any(|word| word == camel_case(name)) {
+    } else if kind == Kind::Command && Command::named(name).is_some() {
+        format!("the command `{name}` already exists")
+    } else if kind.templates()[0].1.split(|c: char| !c.is_alphanumeric()).any(|word| word == camel_case(name))
+    {
         format!("the template already uses the name `{}`", camel_case(name))
     } else {
         return Ok(());

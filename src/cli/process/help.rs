@@ -1,59 +1,39 @@
 //! The help of the whole command line: the commands in groups by their purpose.
 
-use clap::Command;
+use crate::command::{Command, Group};
 use clap::builder::StyledStr;
 use std::fmt::Write;
 
-/// The commands by their purpose, as `--help` lists them.
-const GROUPS: [(&str, &[&str]); 6] = [
-    ("Rendering", &["render", "watch", "merge", "film", "farm"]),
-    ("Scenes", &["new", "list", "check", "fmt", "convert", "mesh", "dump"]),
-    ("Looking inside", &["plan", "probe", "diff", "grade", "review"]),
-    ("Rays", &["hits", "judge", "hard"]),
-    ("Speed and accuracy", &["choose", "chart", "verify", "bench"]),
-    ("Tools", &["lsp", "schema", "grammar", "completions", "man", "help"]),
-];
-
 /// Makes `--help` list the commands in groups.
-pub fn grouped(command: Command) -> Command {
-    let styles = command.get_styles();
+pub fn grouped(line: clap::Command) -> clap::Command {
+    let styles = line.get_styles();
     let (header, literal) = (styles.get_header(), styles.get_literal());
     let mut template = StyledStr::new();
+    let row = |template: &mut StyledStr, name: &str, about: String| {
+        let _ = writeln!(template, "  {literal}{name:<11}{literal:#}  {about}");
+    };
     let _ = write!(template, "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n");
-    for (purpose, names) in GROUPS {
-        let _ = write!(template, "\n{header}{purpose}:{header:#}\n");
-        for name in names {
-            let about = match command.find_subcommand(name) {
-                // As it is: each start of the program makes this, and taking styles out takes longer than a small image.
-                Some(command) => {
-                    command.get_about().map(|about| about.ansi().to_string()).unwrap_or_default()
-                }
-                None => "Explain a command and its options".to_owned(),
-            };
-            let _ = writeln!(template, "  {literal}{name:<11}{literal:#}  {about}");
+    for group in Group::ALL {
+        let _ = write!(template, "\n{header}{}:{header:#}\n", group.heading());
+        for name in Command::of(group).into_iter().map(Command::name) {
+            // As it is: each start of the program makes this, and taking styles out takes longer than a small image.
+            let about = line.find_subcommand(name).and_then(clap::Command::get_about);
+            row(&mut template, name, about.map(|about| about.ansi().to_string()).unwrap_or_default());
         }
     }
+    row(&mut template, "help", "Explain a command and its options".to_owned());
     let _ = write!(template, "\n{header}Options:{header:#}\n{{options}}{{after-help}}");
-    command.help_template(template)
+    line.help_template(template)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command;
+    use crate::line;
+    use clap::Command;
     use clap::error::ErrorKind;
     use std::fs;
     use std::path::Path;
-
-    #[test]
-    fn every_command_is_in_one_group() {
-        let command = command();
-        let mut known: Vec<&str> = command.get_subcommands().map(Command::get_name).chain(["help"]).collect();
-        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| *names).copied().collect();
-        known.sort_unstable();
-        grouped.sort_unstable();
-        assert_eq!(grouped, known);
-    }
 
     /// Appends a command and its subcommands.
     fn collect<'c>(command: &'c Command, all: &mut Vec<&'c Command>) {
@@ -63,7 +43,7 @@ mod tests {
 
     #[test]
     fn every_example_is_a_command_line() {
-        let command = command();
+        let command = line();
         let mut all = Vec::new();
         collect(&command, &mut all);
         for explained in all.into_iter().filter(|command| command.get_name() != "lsp") {
@@ -118,7 +98,7 @@ mod tests {
                 };
                 let Some(at) = line.find("tabray ").filter(begins) else { continue };
                 let words = words(&line[at..]);
-                let fault = command().try_get_matches_from(words).err();
+                let fault = crate::line().try_get_matches_from(words).err();
                 assert!(fault.is_none(), "{}: {line}: {fault:?}", page.display());
                 count += 1;
             }

@@ -5,6 +5,7 @@ mod items;
 mod pending;
 
 use super::report::Page;
+use crate::command::{Command, Group, Run};
 use crate::options::number::whole;
 use crate::process::failure::Failure;
 use crate::process::messages;
@@ -51,7 +52,11 @@ Examples:
   tabray review --accept snapshots/entities/ring.snap.png
   tabray review -o review.html --before ../old/tabray";
 
-pub fn run(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
+inventory::submit! {
+    Command::new("review", Group::Inside, &Run(run)).placed(4, 19)
+}
+
+fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     if !args.accept.is_empty() {
         return each(&args.accept, "accepted", Pending::accept);
     }
