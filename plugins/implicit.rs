@@ -153,4 +153,8 @@ impl Implicit for Surface {
     fn bounds(&self) -> [DVec3; 2] {
         self.corners
     }
+
+    fn is_box_exact(&self) -> bool {
+        true
+    }
 }

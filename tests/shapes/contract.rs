@@ -93,6 +93,7 @@ enum Flaw {
     FromOneSide,
     Proof,
     Bounds,
+    LowBounds,
     Clear,
     Untouched,
     Leaning,
@@ -179,12 +180,14 @@ impl Hittable for Ball {
     fn facts(&self) -> Facts {
         let half_size = match self.flaw {
             Flaw::Bounds => 0.9 * self.radius,
+            Flaw::LowBounds => self.radius,
             _ => 2.0 * self.radius,
         };
+        let lowered = if self.flaw == Flaw::LowBounds { 0.001 * self.radius * DVec3::Y } else { DVec3::ZERO };
         let is_hit_again = matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain);
         Facts {
             can_hit_itself: if is_hit_again { Sides::BOTH } else { Sides::INSIDE },
-            ..Facts::within(Aabb { low: self.center - half_size, high: self.center + half_size })
+            ..Facts::within(Aabb { low: self.center - half_size, high: self.center + half_size - lowered })
         }
     }
 
@@ -227,6 +230,23 @@ impl Equation for Ball {
 
     fn inside_trim<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(if self.flaw == Flaw::Proof { -1.0 } else { 1.0 })
+    }
+}
+
+/// A ball whose box is a little low.
+struct Shaved(f64);
+
+impl Implicit for Shaved {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
+        x.powi(2) + y.powi(2) + z.powi(2) - N::constant(self.0).powi(2)
+    }
+
+    fn why_not_closed(&self) -> Option<&'static str> {
+        None
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        [DVec3::splat(-self.0), DVec3::new(self.0, 0.999 * self.0, self.0)]
     }
 }
 
@@ -281,7 +301,7 @@ const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>
 
 static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
 
-static BROKEN: [(Promise, Entity); 32] = [
+static BROKEN: [(Promise, Entity); 34] = [
     (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
     (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
     (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
@@ -293,6 +313,13 @@ static BROKEN: [(Promise, Entity); 32] = [
     (Promise::HitIsOnTheSurface, shape("from_one_side", |args| ball(args, Flaw::FromOneSide))),
     (Promise::AgreesWithItsProof, shape("proof", |args| ball(args, Flaw::Proof))),
     (Promise::BoundsHoldHits, shape("bounds", |args| ball(args, Flaw::Bounds))),
+    (Promise::BoundsHoldHits, shape("low_bounds", |args| ball(args, Flaw::LowBounds))),
+    (
+        Promise::BoundsHoldHits,
+        Entity::shape("shaved", "a ball that its box cuts", &[TABLE], |args| {
+            Ok(Body::implicit(Shaved(args.get(&RADIUS)), Frame::at(args.get(&CENTER))))
+        }),
+    ),
     (Promise::BoundsHoldHits, shape("clear", |args| ball(args, Flaw::Clear))),
     (Promise::HitIsTouched, shape("untouched", |args| ball(args, Flaw::Untouched))),
     (Promise::NormalIsUpright, shape("leaning", |args| ball(args, Flaw::Leaning))),

@@ -8,6 +8,7 @@ mod common;
 mod oracle;
 
 mod arithmetic;
+mod boxes;
 mod cameras;
 mod clips;
 mod contract;

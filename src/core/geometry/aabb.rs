@@ -57,7 +57,7 @@ impl Aabb {
     pub fn with_slack(&self, distance: f64) -> Self {
         let size = |of: f64| if of.is_finite() { of.abs() } else { 0.0 };
         let largest = |of: DVec3| larger(larger(size(of.x), size(of.y)), size(of.z));
-        let slack = SLACK * (distance + larger(largest(self.low), largest(self.high)));
+        let slack = SLACK * (size(distance) + larger(largest(self.low), largest(self.high)));
         Self { low: self.low - slack, high: self.high + slack }
     }
 }

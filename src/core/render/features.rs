@@ -43,8 +43,7 @@ impl Features {
     pub fn new(camera: &Sensor, objects: &[Object]) -> Self {
         let squares = camera.pixels.map(|side| side.div_ceil(TILE));
         let is_unknown = camera.project(camera.origins().middle) == Projected::Unknown;
-        let small =
-            objects.iter().filter_map(|object| SmallObject::of(camera, &object.shape.facts().bounds?));
+        let small = objects.iter().filter_map(|object| SmallObject::of(camera, &object.shape.bounds()?));
         let mut each: Vec<(u32, SmallObject)> = Vec::new();
         let mut count = 0;
         for small in small {

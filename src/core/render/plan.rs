@@ -71,7 +71,7 @@ pub(crate) struct CostlyObjects {
 impl CostlyObjects {
     fn of(objects: &[Object]) -> Option<Self> {
         let costly = objects.iter().enumerate().filter(|(_, object)| object.shape.facts().may_be_costly);
-        let boxed = |(index, object): (usize, &Object)| Some((index as u32, object.shape.facts().bounds?));
+        let boxed = |(index, object): (usize, &Object)| Some((index as u32, object.shape.bounds()?));
         let (indices, boxes): (Vec<_>, Vec<_>) = costly.filter_map(boxed).unzip();
         let mut tree = Bvh::new(&boxes);
         tree.rename(|object| indices[object as usize]);

@@ -46,6 +46,8 @@ const MOST_CUT: usize = 64;
 /// See [`Made::implicit`](crate::shapes::Made::implicit).
 pub(super) fn body(formula: impl Implicit + 'static, frame: Frame) -> Body {
     let [low, high] = formula.bounds();
+    let given = Aabb { low, high };
+    let Aabb { low, high } = if formula.is_box_exact() { given } else { given.with_slack(0.0) };
     let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
     let degree = formula.along([diagonal; 3]).degree();
     let ends = [low.to_array(), high.to_array()];
@@ -79,7 +81,9 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     fn facts(&self) -> Facts {
-        let own = Aabb { low: self.low, high: self.high };
+        // Not the widened box, which would move the patterns on the shape.
+        let [low, high] = self.formula.bounds();
+        let own = Aabb { low, high };
         Facts { is_two_sided: true, may_be_costly: true, ..Facts::within(self.frame.bounds(&own)) }
     }
 

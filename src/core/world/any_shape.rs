@@ -47,10 +47,22 @@ impl AnyShape {
         self.is_smooth
     }
 
+    /// Returns a box that contains the shape; `None` for an unbounded shape. This is the box of its facts, widened by
+    /// the rounding of its numbers.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.facts().widened()
+    }
+
+    /// Tells whether no part of the shape lies in a region. `false` is always correct.
+    pub fn is_clear_of(&self, region: &Aabb) -> bool {
+        let shape = self.shape.hittable();
+        shape.is_clear_of(&region.with_slack(shape.facts().max_coordinate))
+    }
+
     /// Returns the bounding box by which the shape may be culled, if there is one. Shapes of the notes are never
     /// culled, since the notes' program tests every ray against every shape.
     pub fn culling_bounds(&self) -> Option<Aabb> {
-        self.facts().bounds.filter(|_| !self.shape.is_of_the_notes())
+        self.bounds().filter(|_| !self.shape.is_of_the_notes())
     }
 
     /// Tells whether the shape may be culled because no part of it lies in a region.

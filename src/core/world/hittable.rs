@@ -214,7 +214,8 @@ pub trait Searched: Certified {
 /// A shape that is made of another one copies its facts, and changes those that differ: `..self.shape.facts()`.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
-    /// A box that contains the shape; `None` for an unbounded shape.
+    /// A box that contains the shape up to rounding, by which the box is widened wherever it counts
+    /// ([`widened`](Self::widened)); `None` for an unbounded shape.
     pub bounds: Option<Aabb>,
     /// The largest magnitude of the shape's own coordinates that its hits are computed from, in world units. The ray's
     /// coordinates do not count.
@@ -266,6 +267,13 @@ impl Facts {
     pub fn within(bounds: Aabb) -> Self {
         let max_coordinate = bounds.low.abs().max(bounds.high.abs()).max_element();
         Self { bounds: Some(bounds), ..Self::unbounded(max_coordinate) }
+    }
+
+    /// Returns the box that contains the shape, widened by far more than the rounding of its numbers: these are sums
+    /// and products of a few numbers of the size of the box and of the shape's coordinates.
+    #[inline]
+    pub fn widened(&self) -> Option<Aabb> {
+        self.bounds.map(|bounds| bounds.with_slack(self.max_coordinate))
     }
 }
 

@@ -53,7 +53,7 @@ pub fn warning(model: &Model) -> Option<Fault> {
         return black("all objects are outside the image", looks(how));
     }
     // For such a viewer, planes end before the image plane.
-    let is_endless = |object: &Object| object.shape.facts().bounds.is_none();
+    let is_endless = |object: &Object| object.shape.bounds().is_none();
     let ends =
         camera.camera.planes_end_at().filter(|_| viewer.z < 0.0 && model.objects.iter().any(is_endless))?;
     Some(
@@ -73,7 +73,7 @@ fn is_dark(object: &Object) -> bool {
 
 /// Tells whether all objects have bounds that meet a condition. The search ends at the first object that does not.
 fn all_are(model: &Model, is_so: impl Fn(&Aabb) -> bool) -> bool {
-    model.objects.iter().all(|object| object.shape.facts().bounds.is_some_and(|bounds| is_so(&bounds)))
+    model.objects.iter().all(|object| object.shape.bounds().is_some_and(|bounds| is_so(&bounds)))
 }
 
 /// Tells whether a whole box lies behind the plane through a point with this normal.

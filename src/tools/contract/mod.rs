@@ -6,6 +6,7 @@
 
 mod cameras;
 mod draw;
+mod extremes;
 mod looks;
 mod promise;
 mod rays;
@@ -17,6 +18,7 @@ pub use promise::Promise;
 use draw::{Draw, SceneFolder};
 use promise::Fault;
 use std::fmt;
+use std::slice;
 use tabray_core::parallel;
 use tabray_core::scene::choice::{Choice, ChoiceName};
 use tabray_core::scene::entity::Entity;
@@ -31,6 +33,9 @@ use tabray_lang::syntax::Syntax;
 
 /// The number of scenes that are drawn for an entity type.
 const SCENES: usize = 40;
+
+/// One of this many scenes is also tried at its objects' extremes.
+const EXTREMES: usize = 8;
 
 /// The number of rays that are traced at each object of a drawn scene.
 const RAYS: usize = 30;
@@ -97,6 +102,8 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut draw = Draw::new("scene");
     let mut found = Vec::new();
     for object in &model.objects {
+        let tried = extremes::try_objects(slice::from_ref(object));
+        found.extend(tried.err().map(|fault| (object.args.entity(), fault)));
         found.extend(
             rays::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity(), fault)),
         );
@@ -164,6 +171,19 @@ fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder)
             && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
         {
             gravest = Some(breach(entity, fault, text.clone()));
+        }
+        if entity.kind() == Kind::Object && index % EXTREMES == 0 {
+            for extra in ["", extremes::VARIANTS[index / EXTREMES % extremes::VARIANTS.len()]] {
+                let text = format!("{text}{extra}\n");
+                // An object may have no inside, or there may be no copies.
+                let read = reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy));
+                let Ok(loaded) = read else { continue };
+                if let Err(fault) = extremes::try_objects(&loaded.model.objects)
+                    && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
+                {
+                    gravest = Some(breach(entity, fault, text));
+                }
+            }
         }
         seen = text;
     }

@@ -39,7 +39,7 @@ impl RayTrial<'_> {
             let found = format!("`is_clear_of` is true of {region:?}, yet it is hit at {at}");
             return Err(Promise::BoundsHoldHits.fault(found));
         }
-        match self.shape.facts().bounds {
+        match self.shape.bounds() {
             Some(bounds) if !bounds.with_slack(100.0).overlaps(&Aabb { low: at, high: at }) => {
                 Err(Promise::BoundsHoldHits.fault(format!("it is hit at {at}, outside {bounds:?}")))
             }

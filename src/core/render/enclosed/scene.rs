@@ -1,10 +1,10 @@
 //! A scene for proofs of colours: the objects that lines may hit.
 
 use super::number::{Hit, Number, coarse};
-use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::Line;
 use crate::render::plan::depth::{self, Depth};
-use crate::scene::model::{Model, Object};
+use crate::scene::model::Model;
 use crate::world::patch::Window;
 use std::cell::Cell;
 use tabray_exact::interval::{Float, Interval};
@@ -44,13 +44,8 @@ pub struct SceneBounds {
 impl SceneBounds {
     /// Returns the bounds of a model.
     pub fn of(model: &Model) -> Self {
-        let around = |object: &Object| {
-            let Aabb { low, high } = object.shape.facts().bounds?;
-            let slack = SLACK * low.abs().max(high.abs()).max_element();
-            Some(Aabb { low: low - slack, high: high + slack })
-        };
         Self {
-            boxes: model.objects.iter().map(around).collect(),
+            boxes: model.objects.iter().map(|object| object.shape.bounds()).collect(),
             most: depth::most(model),
             passes_fractions: model.tints_are_fractions(),
         }

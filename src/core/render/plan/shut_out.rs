@@ -74,7 +74,7 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<ShutOut> {
 /// and the object is not.
 fn is_behind_glass(model: &Model, index: usize) -> bool {
     let object = &model.objects[index];
-    let may_touch = |other: &Object| match (object.shape.facts().bounds, other.shape.facts().bounds) {
+    let may_touch = |other: &Object| match (object.shape.bounds(), other.shape.bounds()) {
         (Some(bounds), Some(of_other)) => bounds.overlaps(&of_other),
         _ => true,
     };

@@ -71,6 +71,12 @@ pub trait Implicit: Send + Sync {
     }
 
     /// Returns the low and the high corner of a box around the shape. The box cuts off the surface outside of it, and
-    /// the inside of a cut shape is visible.
+    /// the inside of a cut shape is visible. Unless it [is exact](Self::is_box_exact), the box is widened by far more
+    /// than the rounding of its numbers, so that it may touch the shape.
     fn bounds(&self) -> [DVec3; 2];
+
+    /// Tells whether the box is to cut off the surface exactly where it is, as the box does that a scene gives.
+    fn is_box_exact(&self) -> bool {
+        false
+    }
 }

@@ -36,7 +36,7 @@ pub(super) fn body(formula: impl Parametric + 'static) -> Option<Body> {
     let ends = formula.ends();
     let patches: Box<dyn Patches> = Box::new(formula);
     let tree = Tree::new(&*patches, ends);
-    let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?.with_slack(0.0);
+    let bounds = tree.bounds().filter(|whole| tree.tells_apart(whole))?;
     let shape = ParametricShape { patches, tree, bounds };
     Some(Body::plain(AnyShape::of_packets(shape)))
 }

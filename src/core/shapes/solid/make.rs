@@ -175,8 +175,7 @@ fn seen_as(object: &Arc<Body>, shape: impl Into<AnyShape>) -> Body {
 /// Returns the bodies of the parts whose surface may be visible.
 fn seen(solid: &Solid) -> Vec<Body> {
     let parts: Arc<[Part]> = solid.parts.clone().into();
-    let bounds = parts.iter().map(|part| Some(part.body.shape.facts().bounds?.with_slack(0.0)));
-    let bounds: Arc<[Option<Aabb>]> = bounds.collect();
+    let bounds: Arc<[Option<Aabb>]> = parts.iter().map(|part| part.body.shape.bounds()).collect();
     let whole = solid.tree.bounds(&|part| bounds[part]);
     let body = |index: usize| {
         let around = common(bounds[index], whole);

@@ -1,5 +1,6 @@
 //! Shapes as the solutions of equations, and what can be proven about their hits.
 
+use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::Line;
 use glam::DVec3;
 use tabray_exact::dual::Dual;
@@ -60,9 +61,10 @@ pub trait Equation {
         N::constant(1.0)
     }
 
-    /// Returns the low and the high corner of a box, in the equation's coordinates, outside of which the surface is cut
-    /// off. Surfaces that are not quadratic need a box. The box may be infinite along an axis, but the hits of a ray
-    /// parallel to that axis are then in doubt.
+    /// Returns the low and the high corner of a box, in the equation's coordinates, that contains what
+    /// [`inside_trim`](Self::inside_trim) keeps of the surface, up to rounding: proofs widen it. Surfaces that are not
+    /// quadratic need a box. The box may be infinite along an axis, but the hits of a ray parallel to that axis are then
+    /// in doubt.
     fn extent(&self) -> [DVec3; 2] {
         [DVec3::NEG_INFINITY, DVec3::INFINITY]
     }
@@ -92,7 +94,7 @@ pub(super) trait Values<N: Scalar> {
     /// Returns a positive number where the surface is kept, and a negative one where it is cut off.
     fn inside_trim(&self, at: [N; 3]) -> N;
 
-    /// Returns [`Equation::extent`].
+    /// Returns [`Equation::extent`], widened by the rounding of its numbers.
     fn extent(&self) -> [DVec3; 2];
 }
 
@@ -126,7 +128,9 @@ impl<E: Equation, N: Scalar> Values<N> for E {
     }
 
     fn extent(&self) -> [DVec3; 2] {
-        Equation::extent(self)
+        let [low, high] = Equation::extent(self);
+        let Aabb { low, high } = Aabb { low, high }.with_slack(0.0);
+        [low, high]
     }
 }
 

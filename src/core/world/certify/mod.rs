@@ -23,7 +23,7 @@ pub use footprint::{FootprintHit, OverFootprint, coarse, gradient_over};
 pub use hit_proofs::{HitProofs, Precise, ProofMethods, gradient, shading_normals};
 pub use premise::{Assumption, Premise};
 
-use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::{Line, Sight};
 use f256::f256;
 use glam::DVec3;
@@ -126,11 +126,10 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
 }
 
 /// Returns what a bounding box says about a line's first hit of a shape without an equation: nothing nearer than the
-/// box, and nothing where the line misses it. The box is rounded, and so widened a little.
+/// box, and nothing where the line misses it.
 pub(crate) fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEnclosure<f64> {
     let Some(Aabb { low, high }) = bounds else { return HitEnclosure::Doubtful(0.0) };
-    let slack = SLACK * low.abs().max(high.abs()).max_element();
-    match line.clip(low - slack, high + slack) {
+    match line.clip(low, high) {
         Some((from, _)) => HitEnclosure::Doubtful(from),
         None => HitEnclosure::Misses,
     }

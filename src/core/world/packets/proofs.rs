@@ -81,7 +81,7 @@ impl<T: Hittable, S> HitQueries for Shape<T, S, Unproven> {
     }
 
     fn certify(&self, sight: &Sight, _precision: Precision) -> Enclosure {
-        certify::first_hit_in(self.shape.facts().bounds, &sight.line()).into()
+        certify::first_hit_in(self.shape.facts().widened(), &sight.line()).into()
     }
 }
 

@@ -96,14 +96,13 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
 fn left(object: &Object) -> Rgb {
     let Some(medium) = object.material.medium() else { return Rgb::ONE };
     // A path through a box is no longer than its diagonal.
-    let longest =
-        object.shape.facts().bounds.map_or(f64::INFINITY, |Aabb { low, high }| (high - low).length());
+    let longest = object.shape.bounds().map_or(f64::INFINITY, |Aabb { low, high }| (high - low).length());
     (1.0 - 1e-9) * medium.passed((1.0 + 1e-9) * longest)
 }
 
 /// Encloses the look of an object, at all of its points.
 fn look(object: &Object) -> Option<LookBounds<f64>> {
-    let position = around(object.shape.facts().bounds);
+    let position = around(object.shape.bounds());
     let points = PointBounds { position, normal: None, uv: None, face: None, patch: None, tangents: None };
     EncloseLook::<f64>::look(&*object.shader, &object.material, &points)
 }
