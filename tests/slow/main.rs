@@ -22,6 +22,7 @@ mod habits;
 mod mesh_files;
 mod mesh_table;
 mod performance;
+mod placed;
 mod plugins;
 mod proven;
 mod same;

@@ -1,11 +1,14 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::patch::PatchBounds;
 use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 use f256::f256;
 use glam::{DVec2, DVec3};
+use std::ops::Range;
 use tabray_exact::interval::{Fine, Float, Fraction, Interval};
 use tabray_exact::scalar::{Scalar, per_axis};
 
@@ -45,6 +48,13 @@ pub trait Shader: Send + Sync {
     #[inline]
     fn specular(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
         material.specular
+    }
+
+    /// Calls a function with the shader of a copied object, and parts of these points in its coordinates, if this is the
+    /// shader of a copy; tells whether it is.
+    #[doc(hidden)]
+    fn in_object_space(&self, _cpu: Cpu, _points: SurfacePoints, _each: EachPart) -> bool {
+        false
     }
 
     /// Tells whether the shader bends normals. It is the same in every call.
@@ -225,6 +235,38 @@ pub fn enclosed<F: Precise>(
     let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
     let LookBounds { ambient, diffuse, specular } = look;
     Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
+}
+
+/// Points of a surface, as a shader sees them.
+#[derive(Clone, Copy)]
+pub struct SurfacePoints<'p> {
+    /// The positions, in world coordinates.
+    pub positions: View<'p>,
+    /// The points, as many as there are positions; empty for a shader that sees only their positions.
+    pub seen: &'p [SurfacePoint],
+}
+
+/// Takes the shader of a copied object, and a part of the points in its coordinates, with their indices.
+pub type EachPart<'e> = &'e mut dyn FnMut(&dyn PacketShader, SurfacePoints, Range<usize>);
+
+/// A shader for packets. Every [`Shader`] is one.
+pub trait PacketShader: EnclosedShader {
+    /// Evaluates [`ambient`](Shader::ambient) and [`specular`](Shader::specular) at many points. Returns whether any
+    /// specular reflectivity is not 0.
+    fn ambient_and_specular(
+        &self,
+        cpu: Cpu,
+        material: &Material,
+        points: SurfacePoints,
+        ambients: ViewMut,
+        speculars: ViewMut,
+    ) -> bool;
+
+    /// Evaluates [`diffuse`](Shader::diffuse) at many points. Returns whether any reflectivity is not 0.
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: SurfacePoints, out: ViewMut) -> bool;
+
+    /// Writes the [`tile`](Shader::tile) at each point, as one number.
+    fn tiles(&self, cpu: Cpu, points: SurfacePoints, out: &mut [u64]);
 }
 
 /// The shader of an object that has none of its own: the material everywhere.

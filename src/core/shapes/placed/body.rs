@@ -1,14 +1,19 @@
 //! Copies as objects, and their reflectivities.
 
+use super::object_space::object_points;
+use super::packets::PART;
 use super::shape::Placed;
 use crate::geometry::placement::Placement;
+use crate::geometry::ray_packet::split;
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::Vectors;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::{AnyShader, Body, MakeBoundary};
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::PacketShader;
 use crate::world::patch::{Patch, PatchBounds};
-use crate::world::shader::{self, LookBounds, Plain, Shader};
+use crate::world::shader::{self, EachPart, LookBounds, Plain, Shader, SurfacePoints};
 use crate::world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -91,6 +96,23 @@ impl Shader for PlacedShader {
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         self.own().tile(&self.object_point(at))
+    }
+
+    fn in_object_space(&self, cpu: Cpu, points: SurfacePoints, each: EachPart) -> bool {
+        for part in split(points.positions.len(), PART) {
+            let mut positions = Vectors::<PART>::ZERO;
+            object_points(
+                cpu,
+                &self.placed,
+                points.positions.part(part.clone()),
+                positions.view_mut(part.len()),
+            );
+            // No points are given to a shader that sees only their positions.
+            let seen = points.seen.get(part.clone()).unwrap_or_default();
+            let seen: Vec<_> = seen.iter().map(|at| self.object_point(at)).collect();
+            each(self.own(), SurfacePoints { positions: positions.view(part.len()), seen: &seen }, part);
+        }
+        true
     }
 
     fn bends(&self) -> bool {

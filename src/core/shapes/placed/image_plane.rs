@@ -21,8 +21,9 @@ impl MaxZ {
     }
 
     /// Returns the bracket of a ray's hit before the end. The ray's origin may be off by `origin_error` world units.
+    #[inline(always)]
     pub fn kept_bracket(self, ray: &Ray, bracket: Bracket, origin_error: f64) -> Bracket {
-        let Some(max_z) = self.0.filter(|_| bracket.near < MISS) else { return bracket };
+        let Some(max_z) = self.0 else { return bracket };
         let Bracket { near, far } = bracket;
         let z = |distance: f64| ray.origin.z + distance * ray.dir.z;
         // In units of 2^-53, the error of a component of a camera ray's direction is 3, and that of the product and of
@@ -30,13 +31,13 @@ impl MaxZ {
         let error = |distance: f64| origin_error + 4.0 * f64::EPSILON * (ray.origin.z.abs() + distance);
         let is_beyond = |distance: f64| z(distance) - error(distance) > max_z;
         let is_before = |distance: f64| z(distance) + error(distance) < max_z;
-        let ends_beyond = if far == MISS { ray.dir.z > 0.0 } else { is_beyond(far) };
-        if is_beyond(near) && ends_beyond {
-            Bracket::MISS
-        } else if far == MISS || is_before(near) && is_before(far) {
-            bracket
-        } else {
-            Bracket { near, far: MISS }
+        let is_endless = far == MISS;
+        let ends_beyond = if is_endless { ray.dir.z > 0.0 } else { is_beyond(far) };
+        let is_cut_off = is_beyond(near) & ends_beyond;
+        let is_whole = is_endless | (is_before(near) & is_before(far));
+        Bracket {
+            near: if is_cut_off { MISS } else { near },
+            far: if is_cut_off | !is_whole { MISS } else { far },
         }
     }
 

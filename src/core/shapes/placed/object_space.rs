@@ -1,77 +1,98 @@
 //! Rays mapped to a copy's object space, and hits mapped back to world space.
 
+use super::image_plane::MaxZ;
 use super::shape::{Placed, in_world};
-use crate::geometry::ray::{Bracket, RayRange};
-use crate::geometry::ray_packet::RayPacket;
+use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::ray::{Bracket, RayError, RayRange, Side};
+use crate::geometry::ray_packet::{RayPacket, turned};
 use crate::simd::cpu::{Cpu, kernels};
-use crate::simd::soa::Vectors;
+use crate::simd::soa::{Vectors, View};
 use crate::world::coincidence::CLOSE;
 use glam::DVec3;
 
-/// Rays in object space.
-pub struct ObjectSpaceRays<const N: usize> {
-    /// The origins.
-    pub origin: Vectors<N>,
-    /// The directions.
-    pub dir: Vectors<N>,
-    /// The length of a world unit along each ray.
-    pub lengths: [f64; N],
-    /// The ends of the rays, as distances in object space.
-    pub ends: [f64; N],
-    /// A bound of the error of the origins.
-    pub origin_error: f64,
-}
-
-impl<const N: usize> ObjectSpaceRays<N> {
-    /// Rays before [`set`](Self::set).
-    pub const NONE: Self = Self {
-        origin: Vectors::ZERO,
-        dir: Vectors::ZERO,
-        lengths: [0.0; N],
-        ends: [0.0; N],
-        origin_error: 0.0,
+/// Calls a function with at most `N` rays in object space, their ends there, and the length of a world unit along each.
+/// `ends` are distances in world units, and `drift` is that of the rays in object space.
+#[inline(always)]
+pub fn in_object_space<const N: usize, T>(
+    (cpu, placed): (Cpu, &Placed),
+    (rays, ends): (RayPacket, &[f64]),
+    drift: RayError,
+    act: impl FnOnce(RayPacket, &mut [f64], &[f64]) -> T,
+) -> T {
+    let count = ends.len();
+    // Separate arrays: a large one would be cleared byte by byte.
+    let (mut origin, mut dir) = (Vectors::<N>::ZERO, Vectors::<N>::ZERO);
+    let (mut lengths, mut own_ends) = ([0.0; N], [0.0; N]);
+    let (lengths, own_ends) = (&mut lengths[..count], &mut own_ends[..count]);
+    take_in(cpu, placed, rays, ends, lengths, own_ends, origin.view_mut(count), dir.view_mut(count));
+    let origin_error = if rays.origin_error > 0.0 {
+        let Aabb { low, high } = aabb::around(cpu, rays.origin.first(count));
+        placed.object_error(low.abs().max(high.abs()), rays.origin_error)
+    } else {
+        0.0
     };
-
-    /// Sets at most `N` rays in object space, with ends given as distances in world units. The rays are not returned,
-    /// because returning large values may copy them.
-    #[inline(always)]
-    pub fn set(&mut self, cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) {
-        let count = ends.len();
-        let (lengths, own_ends) = (&mut self.lengths[..count], &mut self.ends[..count]);
-        let (origins, dirs) = (self.origin.view_mut(count), self.dir.view_mut(count));
-        let largest = take_in(cpu, placed, rays, ends, lengths, own_ends, origins, dirs);
-        if rays.origin_error > 0.0 {
-            self.origin_error = placed.object_error(DVec3::splat(largest), rays.origin_error);
-        }
-    }
-
-    /// Returns the first `count` rays.
-    #[inline(always)]
-    pub fn rays(&self, count: usize) -> RayPacket<'_> {
-        RayPacket::new(self.origin.view(count), self.dir.view(count), self.origin_error)
-    }
+    let own = RayPacket::new(origin.view(count), dir.view(count), origin_error).leaving(rays.leaving);
+    act(RayPacket { drift, ..own }, own_ends, lengths)
 }
 
 kernels! {
-    /// Maps rays and their ends to object space. Returns the largest coordinate of their origins in world space.
+    /// Maps rays and their ends to object space.
     fn take_in(
         placed: &Placed, rays: RayPacket, ends: &[f64], lengths: &mut [f64], own_ends: &mut [f64]
-    ) => origins, dirs -> f64 {
+    ) => origins, dirs {
         let count = ends.len();
         let rays = rays.first(count);
         let (lengths, own_ends) = (&mut lengths[..count], &mut own_ends[..count]);
         let (mut origins, mut dirs) = (origins.first(count), dirs.first(count));
-        let mut largest = 0.0_f64;
         for lane in 0..count {
-            let ray = rays.get(lane);
-            let (own, length) = placed.object_ray(&ray);
+            let (own, length) = placed.object_ray(&rays.get(lane));
             origins.set(lane, own.origin);
             dirs.set(lane, own.dir);
             lengths[lane] = length;
             own_ends[lane] = ends[lane] * length * (1.0 + CLOSE);
-            largest = largest.max(ray.origin.abs().max_element());
         }
-        largest
+    }
+
+    /// Maps points to object space.
+    pub fn object_points(placed: &Placed, points: View) => out {
+        let (count, mut out) = (points.len(), out.first(points.len()));
+        for lane in 0..count {
+            out.set(lane, placed.object_point(points.get(lane)));
+        }
+    }
+
+    /// Maps the points at these distances of rays to object space.
+    pub fn object_hits(placed: &Placed, rays: RayPacket, distances: &[f64]) => out {
+        let (count, rays, mut out) = (distances.len(), rays.first(distances.len()), out.first(distances.len()));
+        for lane in 0..count {
+            out.set(lane, placed.object_point(rays.get(lane).at(distances[lane])));
+        }
+    }
+
+    /// Cuts brackets off where a copy ends, like [`MaxZ::kept_bracket`].
+    pub fn keep_brackets(max_z: MaxZ, rays: RayPacket, near: &mut [f64], far: &mut [f64]) {
+        let (count, rays) = (near.len(), rays.first(near.len()));
+        let far = &mut far[..count];
+        for lane in 0..count {
+            let bracket = Bracket { near: near[lane], far: far[lane] };
+            let Bracket { near: low, far: high } = max_z.kept_bracket(&rays.get(lane), bracket, rays.origin_error);
+            (near[lane], far[lane]) = (low, high);
+        }
+    }
+
+    /// Ends rays that end in a box before they begin. Tells whether that ends any.
+    pub fn end_in(bounds: &Aabb, rays: RayPacket, t_max: &[f64], own_ends: &mut [f64]) -> bool {
+        let (count, rays, own_ends) = (t_max.len(), rays.first(t_max.len()), &mut own_ends[..t_max.len()]);
+        let mut any = 0;
+        for lane in 0..count {
+            let end = rays.get(lane).at(t_max[lane]);
+            let is_in = (bounds.low.x <= end.x) & (end.x <= bounds.high.x)
+                & (bounds.low.y <= end.y) & (end.y <= bounds.high.y)
+                & (bounds.low.z <= end.z) & (end.z <= bounds.high.z);
+            own_ends[lane] = if is_in { -1.0 } else { own_ends[lane] };
+            any |= u64::from(is_in & (t_max[lane] > 0.0));
+        }
+        any != 0
     }
 
     /// Maps brackets to world units, like [`in_world`].
@@ -111,6 +132,26 @@ kernels! {
             if is_smooth {
                 geometric_normals.set(lane, turned(normal));
             }
+            travelled[lane] += distances[lane];
+        }
+    }
+
+    /// Maps normals to world space that [`object_hits`] have, seen along any direction with these cosines.
+    pub fn take_out_normals(
+        placed: &Placed, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
+    ) => points, normals {
+        let (count, to_world) = (travelled.len(), placed.to_object_space.transpose());
+        let is_two_sided = placed.body.shape.is_two_sided();
+        let (rays, distances) = (rays.first(count), &distances[..count]);
+        let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
+        let (mut points, mut normals) = (points.first(count), normals.first(count));
+        for lane in 0..count {
+            let (ray, own) = (rays.get(lane), normals.get(lane));
+            let own = if is_two_sided & (cosines[lane] >= 0.0) { -own } else { own };
+            let normal;
+            (sides[lane], cosines[lane], normal) = turned(ray.dir, (to_world * own).normalize(), is_two_sided);
+            points.set(lane, ray.at(distances[lane]));
+            normals.set(lane, normal);
             travelled[lane] += distances[lane];
         }
     }

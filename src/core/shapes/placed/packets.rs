@@ -1,19 +1,22 @@
 //! Packets of rays that may hit a copy. They are mapped to object space together, and the shape is tested against
 //! packets there, too.
 
-use super::object_space::{ObjectSpaceRays, take_out, to_world};
+use super::object_space::{
+    end_in, in_object_space, keep_brackets, object_hits, take_out, take_out_normals, to_world,
+};
 use super::shape::{Placed, entered};
-use crate::geometry::aabb::Aabb;
+use crate::geometry::aabb::{self, Aabb};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{RayPacket, SurfaceInteraction, split};
 use crate::simd::cpu::Cpu;
-use crate::simd::soa::LANES;
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::hittable::Hittable;
 use crate::world::packets::brackets;
 use crate::world::packets::shape::{self, PacketIntersect};
+use glam::DVec3;
 
 /// The number of rays that are mapped to object space together, if there are more than [`LANES`].
-const PART: usize = 64;
+pub(super) const PART: usize = 64;
 
 impl Placed {
     fn few_brackets<const N: usize>(
@@ -33,14 +36,11 @@ impl Placed {
             }
             return;
         }
-        let mut own = ObjectSpaceRays::<N>::NONE;
-        own.set(cpu, self, rays, &ends[..count]);
         // Rays that continue from a surface count as exact.
-        let mut own_drift = RayError::NONE;
+        let mut drift = RayError::NONE;
         if is_from_camera {
-            let origins = (0..count).map(|lane| rays.origin.get(lane));
-            match self.object_drift(origins, rays.drift) {
-                Some(drift) => own_drift = drift,
+            match self.object_drift(&aabb::around(cpu, rays.origin.first(count)), rays.drift) {
+                Some(own) => drift = own,
                 None => {
                     near.fill(0.0);
                     far.fill(MISS);
@@ -48,17 +48,15 @@ impl Placed {
                 }
             }
         }
-        let own_rays = RayPacket { drift: own_drift, ..own.rays(count).leaving(rays.leaving) };
-        shape.brackets(cpu, own_rays, &own.ends[..count], (&mut *near, &mut *far));
-        to_world(cpu, own_drift.dir, &own.lengths[..count], rays, ends, near, far);
+        let ends = &ends[..count];
+        in_object_space::<N, _>((cpu, self), (rays, ends), drift, |own, own_ends, lengths| {
+            shape.brackets(cpu, own, own_ends, (&mut *near, &mut *far));
+            to_world(cpu, drift.dir, lengths, rays, ends, near, far);
+        });
         if self.max_z.0.is_some() {
-            for lane in 0..count {
-                let bracket = Bracket { near: near[lane], far: far[lane] };
-                Bracket { near: near[lane], far: far[lane] } =
-                    self.max_z.kept_bracket(&rays.get(lane), bracket, rays.origin_error);
-            }
+            keep_brackets(cpu, self.max_z, rays, near, far);
         }
-        if is_from_camera && rays.drift.is_none() {
+        if is_from_camera && rays.drift.is_none() && self.bounds.is_some() {
             for lane in 0..count {
                 let bracket = Bracket { near: near[lane], far: far[lane] };
                 let entry = || Self::entry(self.bounds, &rays.get(lane));
@@ -71,32 +69,36 @@ impl Placed {
     /// bracket mapped to world space depends on the drift.
     fn few_refine(&self, cpu: Cpu, rays: RayPacket, (near, far): (&[f64], &[f64]), out: &mut [f64]) {
         let (count, shape) = (out.len(), self.body.shape.packets());
-        let mut own = ObjectSpaceRays::<PART>::NONE;
-        own.set(cpu, self, rays, &[MISS; PART][..count]);
-        let (mut low, mut high) = ([MISS; PART], [MISS; PART]);
-        let (low, high) = (&mut low[..count], &mut high[..count]);
-        let own_rays = own.rays(count).leaving(rays.leaving);
-        shape.brackets(cpu, own_rays, &own.ends[..count], (&mut *low, &mut *high));
-        // A single ray decides doubtful hits.
-        let mut is_open = [false; PART];
-        for lane in 0..count {
-            is_open[lane] = low[lane] < MISS && high[lane] == MISS;
-            high[lane] = if is_open[lane] { low[lane] } else { high[lane] };
-        }
-        let mut distances = [MISS; PART];
-        distances[..count].copy_from_slice(low);
-        shape.refine(cpu, own_rays, (&*low, &*high), &mut distances[..count]);
-        for lane in (0..count).filter(|lane| near[*lane] != far[*lane]) {
-            let distance = if low[lane] == high[lane] { low[lane] } else { distances[lane] };
-            let kept = RayRange::ALL.keep(distance / own.lengths[lane]);
-            out[lane] = if is_open[lane] || distance.is_nan() {
-                f64::NAN
-            } else if self.max_z.cuts_off(&rays.get(lane), kept) {
-                MISS
-            } else {
-                kept
-            };
-        }
+        in_object_space::<PART, _>(
+            (cpu, self),
+            (rays, &[MISS; PART][..count]),
+            RayError::NONE,
+            |own, ends, lengths| {
+                let (mut low, mut high) = ([MISS; PART], [MISS; PART]);
+                let (low, high) = (&mut low[..count], &mut high[..count]);
+                shape.brackets(cpu, own, ends, (&mut *low, &mut *high));
+                // A single ray decides doubtful hits.
+                let mut is_open = [false; PART];
+                for lane in 0..count {
+                    is_open[lane] = low[lane] < MISS && high[lane] == MISS;
+                    high[lane] = if is_open[lane] { low[lane] } else { high[lane] };
+                }
+                let mut distances = [MISS; PART];
+                distances[..count].copy_from_slice(low);
+                shape.refine(cpu, own, (&*low, &*high), &mut distances[..count]);
+                for lane in (0..count).filter(|lane| near[*lane] != far[*lane]) {
+                    let distance = if low[lane] == high[lane] { low[lane] } else { distances[lane] };
+                    let kept = RayRange::ALL.keep(distance / lengths[lane]);
+                    out[lane] = if is_open[lane] || distance.is_nan() {
+                        f64::NAN
+                    } else if self.max_z.cuts_off(&rays.get(lane), kept) {
+                        MISS
+                    } else {
+                        kept
+                    };
+                }
+            },
+        );
     }
 
     fn few_occluded<const N: usize>(
@@ -108,26 +110,18 @@ impl Placed {
         doubt: &mut [u64],
     ) -> bool {
         let (count, shape) = (t_max.len(), self.body.shape.packets());
-        let mut own = ObjectSpaceRays::<N>::NONE;
-        own.set(cpu, self, rays, t_max);
-        let mut ends_within = false;
-        for lane in 0..count {
+        in_object_space::<N, _>((cpu, self), (rays, t_max), RayError::NONE, |own, own_ends, _| {
             // If a ray ends in the copy's box, rounding may decide whether it is blocked before its end.
-            let end = rays.get(lane).at(t_max[lane]);
-            if bounds.low.cmple(end).all() && end.cmple(bounds.high).all() {
-                own.ends[lane] = -1.0;
-                ends_within |= t_max[lane] > 0.0;
+            let ends_within = end_in(cpu, bounds, rays, t_max, own_ends);
+            let any = shape.occluded(cpu, own, own_ends, blocked, doubt);
+            if ends_within {
+                for lane in 0..count {
+                    let is_open = own_ends[lane] < 0.0 && t_max[lane] > 0.0 && blocked[lane] == 0;
+                    doubt[lane] |= u64::from(is_open);
+                }
             }
-        }
-        let own_rays = own.rays(count).leaving(rays.leaving);
-        let any = shape.occluded(cpu, own_rays, &own.ends[..count], blocked, doubt);
-        if ends_within {
-            for lane in 0..count {
-                let is_open = own.ends[lane] < 0.0 && t_max[lane] > 0.0 && blocked[lane] == 0;
-                doubt[lane] |= u64::from(is_open);
-            }
-        }
-        any || ends_within
+            any || ends_within
+        })
     }
 
     fn few_interact<const N: usize>(
@@ -139,24 +133,43 @@ impl Placed {
     ) {
         let SurfaceInteraction { mut points, mut normals, mut geometric_normals, sides, cosines, travelled } =
             interaction;
-        let count = travelled.len();
-        let mut own = ObjectSpaceRays::<N>::NONE;
-        own.set(cpu, self, rays, &distances[..count]);
-        let mut own_distances = [0.0; N];
-        for lane in 0..count {
-            own_distances[lane] = distances[lane] * own.lengths[lane];
-        }
+        let (count, shape) = (travelled.len(), self.body.shape.packets());
         let own_interaction = SurfaceInteraction {
             points: points.first(count),
             normals: normals.first(count),
             geometric_normals: geometric_normals.first(count),
-            sides,
+            sides: &mut *sides,
             cosines: &mut *cosines,
             travelled: &mut [0.0; N][..count],
         };
-        let shape = self.body.shape.packets();
-        shape.interact(cpu, own.rays(count), &own_distances[..count], own_interaction);
-        take_out(cpu, self, rays, distances, cosines, travelled, points, normals, geometric_normals);
+        if shape.finds_normals_by_rays() {
+            let distances = &distances[..count];
+            in_object_space::<N, _>((cpu, self), (rays, distances), RayError::NONE, |own, _, lengths| {
+                let mut own_distances = [0.0; N];
+                for lane in 0..count {
+                    own_distances[lane] = distances[lane] * lengths[lane];
+                }
+                shape.interact(cpu, own.leaving(None), &own_distances[..count], own_interaction);
+            });
+            return take_out(
+                cpu,
+                self,
+                rays,
+                distances,
+                cosines,
+                travelled,
+                points,
+                normals,
+                geometric_normals,
+            );
+        }
+        // Rays of no length at the hits, along a direction of positive parts: adding -0 changes no number.
+        let mut own_points = Vectors::<N>::ZERO;
+        object_hits(cpu, self, rays, &distances[..count], own_points.view_mut(count));
+        let along = Vectors::<N>::of(DVec3::ONE.normalize());
+        let own = RayPacket::new(own_points.view(count), along.view(count), 0.0);
+        shape.interact(cpu, own, &[-0.0; N][..count], own_interaction);
+        take_out_normals(cpu, self, rays, distances, sides, cosines, travelled, points, normals);
     }
 }
 
@@ -207,7 +220,8 @@ impl PacketIntersect for Placed {
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
         let shape = self.body.shape.packets();
-        if shape.is_of_the_notes() || !shape.finds_normals_by_rays() {
+        let is_shaded_otherwise = self.body.shape.is_smooth() && !shape.finds_normals_by_rays();
+        if shape.is_of_the_notes() || is_shaded_otherwise {
             return shape::interact_each(cpu, self, rays, distances, interaction);
         }
         let SurfaceInteraction { mut points, mut normals, mut geometric_normals, sides, cosines, travelled } =

@@ -82,15 +82,11 @@ impl Placed {
         (error + ROUNDING * size) / self.placement.scale.min_element()
     }
 
-    /// Returns the drift in object space of rays with these origins and a drift in world space. Returns `None` if it is
-    /// too large for useful brackets.
-    pub(super) fn object_drift(
-        &self,
-        origins: impl Iterator<Item = DVec3>,
-        drift: RayError,
-    ) -> Option<RayError> {
+    /// Returns the drift in object space of rays with origins in a box and a drift in world space. Returns `None` if it
+    /// is too large for useful brackets.
+    pub(super) fn object_drift(&self, origins: &Aabb, drift: RayError) -> Option<RayError> {
         let Placement { scale, translation, .. } = self.placement;
-        let away = origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
+        let away = (origins.low - translation).abs().max((origins.high - translation).abs()).element_sum();
         let (least, most) = (scale.min_element(), scale.max_element());
         // A camera ray in world space has only its own rounding error.
         let drift = if drift.is_none() { CAMERA } else { drift };
@@ -137,7 +133,7 @@ impl Placed {
         let is_from_camera = range.origin_side.is_none() && range.origin_error == 0.0;
         let mut drift = RayError::NONE;
         if is_from_camera {
-            match self.object_drift([ray.origin].into_iter(), ray.drift) {
+            match self.object_drift(&Aabb::around(&[ray.origin]), ray.drift) {
                 Some(own) => drift = own,
                 None => return Bracket::UNKNOWN,
             }
@@ -162,7 +158,7 @@ impl Placed {
 fn bounds(body: &Body, placement: Placement, to_object_space: DMat3) -> Option<Aabb> {
     let Placement { scale, translation, .. } = placement;
     let to_world = to_object_space.transpose() * DMat3::from_diagonal(scale * scale);
-    let own = body.shape.facts().bounds?;
+    let own = body.shape.bounds()?;
     let turned = body.shape.bounds_after(&to_world).unwrap_or_else(|| {
         let middle = to_world * own.middle();
         let DMat3 { x_axis, y_axis, z_axis } = to_world;

@@ -1,39 +1,12 @@
 //! Shaders, evaluated at many points at once.
 
+pub use crate::world::shader::{PacketShader, SurfacePoints};
+
 use crate::simd::cpu::{Cpu, kernels};
-use crate::simd::soa::{View, ViewMut};
+use crate::simd::soa::ViewMut;
 use crate::world::material::{Material, Rgb};
-use crate::world::shader::{EnclosedShader, Shader};
+use crate::world::shader::Shader;
 use crate::world::surface_point::SurfacePoint;
-
-/// Points of a surface, as a shader sees them.
-#[derive(Clone, Copy)]
-pub struct SurfacePoints<'p> {
-    /// The positions, in world coordinates.
-    pub positions: View<'p>,
-    /// The points, as many as there are positions; empty for a shader that sees only their positions.
-    pub seen: &'p [SurfacePoint],
-}
-
-/// A shader for packets. Every [`Shader`] is one.
-pub trait PacketShader: EnclosedShader {
-    /// Evaluates [`ambient`](Shader::ambient) and [`specular`](Shader::specular) at many points. Returns whether any
-    /// specular reflectivity is not 0.
-    fn ambient_and_specular(
-        &self,
-        cpu: Cpu,
-        material: &Material,
-        points: SurfacePoints,
-        ambients: ViewMut,
-        speculars: ViewMut,
-    ) -> bool;
-
-    /// Evaluates [`diffuse`](Shader::diffuse) at many points. Returns whether any reflectivity is not 0.
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: SurfacePoints, out: ViewMut) -> bool;
-
-    /// Writes the [`tile`](Shader::tile) at each point, as one number.
-    fn tiles(&self, cpu: Cpu, points: SurfacePoints, out: &mut [u64]);
-}
 
 impl<T: Shader> PacketShader for T {
     fn ambient_and_specular(
@@ -41,18 +14,32 @@ impl<T: Shader> PacketShader for T {
         cpu: Cpu,
         material: &Material,
         points: SurfacePoints,
-        ambients: ViewMut,
-        speculars: ViewMut,
+        mut ambients: ViewMut,
+        mut speculars: ViewMut,
     ) -> bool {
-        ambient_and_specular(cpu, self, material, points, ambients, speculars)
+        let mut any = false;
+        let is_copy = self.in_object_space(cpu, points, &mut |shader, own, part| {
+            let (ambients, speculars) = (ambients.part(part.clone()), speculars.part(part));
+            any |= shader.ambient_and_specular(cpu, material, own, ambients, speculars);
+        });
+        if is_copy { any } else { ambient_and_specular(cpu, self, material, points, ambients, speculars) }
     }
 
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: SurfacePoints, out: ViewMut) -> bool {
-        diffuses(cpu, self, material, points, out)
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: SurfacePoints, mut out: ViewMut) -> bool {
+        let mut any = false;
+        let is_copy = self.in_object_space(cpu, points, &mut |shader, own, part| {
+            any |= shader.diffuses(cpu, material, own, out.part(part));
+        });
+        if is_copy { any } else { diffuses(cpu, self, material, points, out) }
     }
 
     fn tiles(&self, cpu: Cpu, points: SurfacePoints, out: &mut [u64]) {
-        tiles(cpu, self, points, out);
+        let is_copy = self.in_object_space(cpu, points, &mut |shader, own, part| {
+            shader.tiles(cpu, own, &mut out[part]);
+        });
+        if !is_copy {
+            tiles(cpu, self, points, out);
+        }
     }
 }
 
