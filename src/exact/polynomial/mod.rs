@@ -97,6 +97,14 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
         ROUNDED_UP * (self.error + 2.0 * steps * C::ROUNDING * self.norm + steps * f64::MIN_POSITIVE)
     }
 
+    /// Returns a bound of the distance of the slope from [`at`](Self::at) from that at any place at most `reach` from
+    /// there, including rounding.
+    pub fn slope_change(&self, reach: f64) -> f64 {
+        let degree = self.degree as f64;
+        // A derivative multiplies each coefficient by at most the degree.
+        ROUNDED_UP * degree * (self.error_at() + ROUNDED_UP * degree * self.norm * reach)
+    }
+
     /// Returns bounds of a constant, or `None` for any other polynomial.
     fn bounds(self) -> Option<Interval<C::End>> {
         let [at, error] = [self.coefficients[0].nearest(), self.error];

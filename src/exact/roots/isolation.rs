@@ -26,7 +26,7 @@ pub fn visit<C: Coefficient, const N: usize, R>(
     visit: impl FnMut(RootPart<C>) -> Option<R>,
 ) -> Option<R> {
     let form = Bernstein::of(polynomial)?;
-    let mut search = Search { visit, hidden: None };
+    let mut search = Search { polynomial, visit, hidden: None };
     let taken = search.piece(&form, [C::from(-1.0), C::from(1.0)], depth::<C>());
     taken.or_else(|| search.flush())
 }
@@ -38,14 +38,15 @@ fn depth<C: Coefficient>() -> usize {
     bits / 2 + 8
 }
 
-struct Search<V, C> {
+struct Search<'p, V, C, const N: usize> {
+    polynomial: &'p Polynomial<C, N>,
     visit: V,
     /// A hidden part that the next one may extend.
     hidden: Option<[C; 2]>,
 }
 
-impl<C: Coefficient, R, V: FnMut(RootPart<C>) -> Option<R>> Search<V, C> {
-    fn piece<const N: usize>(&mut self, form: &Bernstein<C, N>, ends: [C; 2], depth: usize) -> Option<R> {
+impl<C: Coefficient, R, V: FnMut(RootPart<C>) -> Option<R>, const N: usize> Search<'_, V, C, N> {
+    fn piece(&mut self, form: &Bernstein<C, N>, ends: [C; 2], depth: usize) -> Option<R> {
         let [low, high] = ends;
         match form.roots() {
             Roots::None => self.flush().or_else(|| (self.visit)(RootPart::Free(ends))),
@@ -64,11 +65,24 @@ impl<C: Coefficient, R, V: FnMut(RootPart<C>) -> Option<R>> Search<V, C> {
         }
     }
 
-    /// Visits the hidden part.
+    /// Visits the hidden part. A root where halving cuts a piece is hidden by both halves, and simple all the same.
     fn flush(&mut self) -> Option<R> {
         let ends = self.hidden.take()?;
-        (self.visit)(RootPart::Hidden(ends))
+        let root = only_root(self.polynomial, ends).map(|rises| RootPart::Root { ends, rises });
+        (self.visit)(root.unwrap_or(RootPart::Hidden(ends)))
     }
+}
+
+/// Tells whether the polynomial rises between two places, if it certainly has exactly one root there and is certainly
+/// monotonic.
+fn only_root<C: Coefficient, const N: usize>(polynomial: &Polynomial<C, N>, ends: [C; 2]) -> Option<bool> {
+    let hidden = polynomial.error_at();
+    let [from, to] = ends.map(|end| polynomial.at(end));
+    let [low, high] = [from, to].map(|[value, _]| value.nearest());
+    let slope = from[1].nearest();
+    let changes = low.abs().min(high.abs()) > hidden && (low < 0.0) != (high < 0.0);
+    let is_steep = slope.abs() > polynomial.slope_change((ends[1] - ends[0]).nearest());
+    (changes && is_steep && (slope > 0.0) == (high > 0.0)).then_some(high > 0.0)
 }
 
 /// The maximum number of steps of [`refined`]. By then, mere bisection has shrunk a bracket by 2^-240.

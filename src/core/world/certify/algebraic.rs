@@ -219,4 +219,16 @@ mod tests {
         }
         assert_eq!(planes.0.get(), 0);
     }
+
+    #[test]
+    fn a_simple_root_where_a_piece_is_halved_is_a_hit() {
+        let error = f256::from(1e-60);
+        let x = Interval { low: f256::from(-2.0) - error, high: f256::from(-2.0) + error };
+        let [y, z] = [0.1, 0.2].map(Interval::constant);
+        let line = Line { origin: [x, y, z], dir: [1.0, 0.0, 0.0].map(Interval::constant) };
+        let found = first_hit::<f256>(&Planes(Cell::new(0)), &line, false);
+        let Some(HitEnclosure::Hits(at)) = found else { panic!("{found:?}") };
+        let at = (at.low.to_f64(), at.high.to_f64());
+        assert_eq!(at, (1.5, 1.5));
+    }
 }
