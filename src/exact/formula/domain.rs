@@ -69,7 +69,8 @@ impl Field {
         Self::new(Arc::new(formula)).unwrap_or_else(|| self.clone())
     }
 
-    /// Tells whether the formula has jumps or poles in a box, and is certainly nonzero on all of their sides there.
+    /// Tells whether the formula has jumps or poles in a box, and is certainly nonzero or undefined on all of their
+    /// sides there.
     pub fn jumps_past_0<F: Float>(&self, at: [Interval<F>; 3]) -> bool {
         if !self.program().instructions.iter().any(|instruction| may_jump(instruction.step)) {
             return false;
@@ -79,7 +80,7 @@ impl Field {
         loop {
             let mut jumps = 0;
             let value = self.beside(at, sides, &mut jumps);
-            if jumps == 0 || jumps > MOST_JUMPS || value.has_zero() {
+            if jumps == 0 || jumps > MOST_JUMPS || value.is_some_and(Interval::has_zero) {
                 return false;
             }
             let Some(last) = (0..jumps).rev().find(|jump| sides >> jump & 1 == 0) else { return true };
@@ -88,27 +89,38 @@ impl Field {
     }
 
     /// Encloses the formula on one side of each jump and pole in a box: above it if its bit of `sides` is set, and
-    /// otherwise below it. Counts the jumps and poles that occur there. An operation that jumps more than once counts
-    /// as too many.
-    fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Interval<F> {
+    /// otherwise below it. Returns `None` if the formula is certainly undefined there. Counts the jumps and poles that
+    /// occur there. A tangent with several poles counts as too many.
+    fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Option<Interval<F>> {
         let program = self.program();
         let mut registers = [at[0]; MOST_REGISTERS];
         registers[..3].copy_from_slice(&at);
+        let mut undefined = [false; MOST_REGISTERS];
         for &Instruction { step, operands, result } in &program.instructions {
             let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
             let c = || registers[usize::from(operands[2])];
             let mut value = step.of::<_, true>(a, b, c, None);
             let (zero, is_above) = (F::of(0.0), *jumps < MOST_JUMPS && sides >> *jumps & 1 == 1);
+            let without = |which: usize| undefined[usize::from(operands[which])];
+            let mut is_undefined = (0..step.operands()).any(without);
+            // Tells whether a divisor is 0 at most on this side of its pole.
+            let is_nowhere = |of: Interval<F>| if is_above { of.high <= zero } else { of.low >= zero };
             match step {
-                Step::Call(Function::Floor | Function::Heaviside) if value.low != value.high => {
-                    let is_single = value.high - value.low == F::of(1.0);
+                // Of several jumps, bounds of all sides are known.
+                Step::Call(Function::Floor | Function::Heaviside) if value.high - value.low == F::of(1.0) => {
                     value = Interval::point(if is_above { value.high } else { value.low });
-                    *jumps += if is_single { 1 } else { MOST_JUMPS + 1 };
+                    *jumps += 1;
                 }
                 Step::Call(Function::If) if a.low < zero && a.high >= zero => {
                     value = if is_above { b } else { c() };
+                    is_undefined = without(0) || without(if is_above { 1 } else { 2 });
                     *jumps += 1;
                 }
+                Step::Call(Function::If) => {
+                    is_undefined = without(0) || without(if a.low >= zero { 1 } else { 2 });
+                }
+                Step::Call(Function::Pow | Function::Sqrt) if a.high < zero => is_undefined = true,
+                Step::Call(Function::Ln) if a.high <= zero => is_undefined = true,
                 // Logarithms and powers are undefined for negative numbers.
                 Step::Call(Function::Ln | Function::Pow) if a.low < zero && a.high >= zero => {
                     let end = Interval::point(a.high);
@@ -122,6 +134,7 @@ impl Field {
                 Step::Div if b.has_zero() && !a.has_zero() => {
                     value =
                         a / if is_above { Interval { low: zero, ..b } } else { Interval { high: zero, ..b } };
+                    is_undefined |= is_nowhere(b);
                     *jumps += 1;
                 }
                 Step::Powi(exponent @ ..0) if exponent % 2 != 0 && a.has_zero() => {
@@ -130,6 +143,7 @@ impl Field {
                         true => Interval { low: end.low, high: F::INFINITY },
                         false => Interval { low: -F::INFINITY, high: end.high },
                     };
+                    is_undefined |= is_nowhere(a);
                     *jumps += 1;
                 }
                 Step::Call(Function::Tan) if !value.is_bounded() => {
@@ -150,8 +164,10 @@ impl Field {
                 _ => {}
             }
             registers[usize::from(result)] = value;
+            undefined[usize::from(result)] = is_undefined;
         }
-        registers[usize::from(program.result)]
+        let result = usize::from(program.result);
+        (!undefined[result]).then(|| registers[result])
     }
 }
 
@@ -230,6 +246,14 @@ mod tests {
             ("tan(x) + z", near(std::f64::consts::FRAC_PI_2), true),
             ("atan2(x - 1, 1)", near(1.0), false),
             ("acos(-0.5/x) - 2", [-1.5, 3.0], false),
+            ("ln(z/(x - 1)) - 0.2", near(1.0), true),
+            ("acosh(z/(x - 1)) - 0.5", near(1.0), true),
+            ("1/cbrt(x - 1) - z", near(1.0), true),
+            ("cbrt(x - 1)^-1 - z", near(1.0), true),
+            ("atanh(z/(x - 1)) - 1", near(1.0), true),
+            ("y*floor(z/(x - 1)) - 1", near(1.0), true),
+            ("sqrt(z/(x - 1)) - 7", near(1.0), true),
+            ("if(x < 1, ln(z/(x - 1)), x - 1)", near(1.0), false),
         ] {
             let at = [Interval { low, high }, Interval::constant(0.3), Interval::constant(0.3)];
             assert_eq!(field(text).jumps_past_0(at), expected, "{text}");

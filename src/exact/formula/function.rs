@@ -75,7 +75,7 @@ static FUNCTIONS: [FormulaFunction; 40] = [
     FormulaFunction { name: "acos", arguments: &["x"], meaning: Formula("atan2(sqrt(1 - x^2), x)") },
     FormulaFunction { name: "atan", arguments: &["x"], meaning: Formula("atan2(x, 1)") },
     FormulaFunction { name: "asinh", arguments: &["x"], meaning: Formula("2*atanh(x/(1 + sqrt(1 + x^2)))") },
-    FormulaFunction { name: "acosh", arguments: &["x"], meaning: Formula("ln(x + sqrt(x^2 - 1))") },
+    FormulaFunction { name: "acosh", arguments: &["x"], meaning: Formula("ln(x + sqrt(x - 1)*sqrt(x + 1))") },
     FormulaFunction { name: "atanh", arguments: &["x"], meaning: Formula("ln((1 + x)/(1 - x))/2") },
     FormulaFunction { name: "smin", arguments: &["a", "b", "k"], meaning: Smooth(Function::Smin) },
     FormulaFunction { name: "smax", arguments: &["a", "b", "k"], meaning: Smooth(Function::Smax) },

@@ -245,9 +245,9 @@ impl<F: Float> Interval<F> {
             return Self::whole();
         };
         let Self { low, high } = Self::outward(inverse.low, inverse.high);
-        // Infinite endpoints stay infinite.
-        let low = if inverse.low == -F::INFINITY { -F::INFINITY } else { low };
-        let high = if inverse.high == F::INFINITY { F::INFINITY } else { high };
+        // Infinite endpoints stay infinite, and 0, the reciprocal of an infinite one, stays 0.
+        let low = if inverse.low == -F::INFINITY || inverse.low == zero { inverse.low } else { low };
+        let high = if inverse.high == F::INFINITY || inverse.high == zero { inverse.high } else { high };
         self * Self { low, high }
     }
 }
