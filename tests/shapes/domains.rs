@@ -5,7 +5,9 @@ use crate::oracle::rays::Random;
 use glam::DVec3;
 use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::query::{ExactRay, Query, Verdict};
+use tabray::render::Plan;
 use tabray::scene::Model;
+use tabray::tools::verify;
 
 /// Half the length of an edge of the box.
 const SIZE: f64 = 2.0;
@@ -232,5 +234,33 @@ fn an_arc_cosine_of_a_quotient_is_seen_on_both_sides_of_its_pole() {
         let [answer] = Query::new(&model).proven(&[ray], false)[..] else { panic!("one answer") };
         assert_eq!(answer.verdict, Verdict::Hit, "{z}");
         assert!((answer.t - (3.0 - z)).abs() < 1e-12, "{} is not {}", answer.t, 3.0 - z);
+    }
+}
+
+/// The numbers of its rays are only enclosed, and some of them meet a pole or the middle of the box.
+#[test]
+fn a_camera_decides_its_rays_past_poles_and_where_planes_meet() {
+    for formula in [
+        "y*z",
+        "x*y*z",
+        "ln(y/z) - 0.2",
+        "acosh(y/z) - 0.5",
+        "atanh(x/z) - y",
+        "1/cbrt(x - z) - 1",
+        "cbrt(x*y)^-1 - 2",
+        "floor(1/x) - 3*y",
+    ] {
+        for position in ["2.52 1.56 3.12", "1 2 4"] {
+            let model = model(&format!(
+                "look_at eye {{ pixeldim 32 24 position {position} target 0 0 0 angle 45 }}
+                material gold {{ ambient 1 1 0 }}
+                implicit it {{ material gold formula \"{formula}\" box -1.2 -1.2 -1.2 1.2 1.2 1.2 }}"
+            ));
+            let plan = Plan::new(&model);
+            for (x, y) in (0..24).flat_map(|y| (0..32).map(move |x| (x, y))) {
+                let verdict = verify::pixel(&plan, x, y).verdict;
+                assert_eq!(verdict, verify::Verdict::Proven, "{formula} from {position} at {x} {y}");
+            }
+        }
     }
 }

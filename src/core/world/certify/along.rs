@@ -18,16 +18,18 @@ pub(super) fn most_pieces(shape: &impl Equation) -> usize {
 }
 
 /// Finds the first hit of a line given in world coordinates. With `leaves`, the line's true start lies on the shape.
+/// `possible` bounds the first possible hit, if coarser numbers have found it.
 pub(super) fn first_along<F: Float>(
     shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
     pieces: usize,
+    possible: Option<Interval<F>>,
 ) -> HitEnclosure<F> {
     let line = shape.to_local(*line);
     if shape.is_quadratic() {
         closed::first_hit(shape, &line, leaves)
     } else {
-        search::first_hit(shape, &line, leaves, pieces)
+        search::first_hit(shape, &line, leaves, pieces, possible)
     }
 }

@@ -8,6 +8,7 @@ use super::algebraic;
 use super::along::{PIECES, first_along, most_pieces};
 use super::equation::{Equation, HitEnclosure};
 use super::footprint::OverFootprint;
+use super::search::first_possible;
 use crate::geometry::sight::Line;
 use f256::f256;
 use tabray_exact::affine::Affine;
@@ -150,7 +151,7 @@ impl Precise for f64 {
 
     fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
         let hit = algebraic::first_hit::<f64>(shape, line, leaves);
-        hit.unwrap_or_else(|| first_along(shape, line, leaves, PIECES))
+        hit.unwrap_or_else(|| first_along(shape, line, leaves, PIECES, None))
     }
 
     fn all_along(
@@ -181,8 +182,18 @@ impl Precise for f256 {
     }
 
     fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> HitEnclosure<Self> {
-        let hit = algebraic::first_hit::<f256>(shape, line, leaves);
-        hit.unwrap_or_else(|| first_along(shape, line, leaves, most_pieces(shape)))
+        if let Some(hit) = algebraic::first_hit::<f256>(shape, line, leaves) {
+            return hit;
+        }
+        if is_closed(shape) {
+            return first_along(shape, line, leaves, 0, None);
+        }
+        // What 53 bits exclude need not be examined with 237.
+        let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
+        match first_possible(first_along::<f64>(shape, &coarse, leaves, PIECES, None)) {
+            Some(at) => first_along(shape, line, leaves, most_pieces(shape), Some(at.into())),
+            None => HitEnclosure::Misses,
+        }
     }
 
     fn all_along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
@@ -206,7 +217,7 @@ impl Precise for Fraction {
 
     fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> HitEnclosure<Self> {
         if is_closed(shape) {
-            return first_along(shape, line, leaves, 0);
+            return first_along(shape, line, leaves, 0, None);
         }
         finely(f256::along(shape, &wide(line), leaves))
     }

@@ -17,16 +17,31 @@ const JUMP: f64 = f64::EPSILON / 16.0;
 /// The number of pieces after which a search is given up if the shape is smaller than the rounding of the line.
 const FEW_PIECES: usize = 16;
 
+/// The width of the piece that is examined first where coarser numbers leave a hit in doubt, as a fraction of the line
+/// from there on: about that of the shortest piece with `f64`.
+const DOUBTFUL: f64 = 16.0 * f64::EPSILON;
+
+/// Returns the bounds of the first possible hit with t > 0, with no hit before them.
+pub fn first_possible<F: Float>(hit: HitEnclosure<F>) -> Option<Interval<F>> {
+    match hit {
+        HitEnclosure::Misses => None,
+        HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => Some(at),
+        HitEnclosure::Doubtful(from) => Some(Interval::point(from)),
+    }
+}
+
 /// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
-/// true start lies on the surface, and is not a hit.
+/// true start lies on the surface, and is not a hit. If coarser numbers have found the first [possible
+/// hit](first_possible), the search begins there.
 pub fn first_hit<F: Float>(
     shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
     pieces: usize,
+    possible: Option<Interval<F>>,
 ) -> HitEnclosure<F> {
     let mut places = Vec::new();
-    let found = unchecked(shape, line, leaves, pieces, &mut places);
+    let found = unchecked(shape, line, leaves, pieces, possible, &mut places);
     check::first(shape, line, found, &places)
 }
 
@@ -36,10 +51,16 @@ fn unchecked<F: Float>(
     line: &Line<Interval<F>>,
     leaves: bool,
     pieces: usize,
+    possible: Option<Interval<F>>,
     places: &mut Vec<f64>,
 ) -> HitEnclosure<F> {
     let zero = F::of(0.0);
     let Some((mut from, to)) = clipped(shape, line) else { return HitEnclosure::Misses };
+    let possible = possible.unwrap_or(Interval::point(zero));
+    from = from.max(possible.low);
+    if from > to {
+        return HitEnclosure::Misses;
+    }
     if !to.is_finite() {
         return HitEnclosure::Doubtful(from);
     }
@@ -60,15 +81,19 @@ fn unchecked<F: Float>(
     let [low, high] = shape.extent();
     let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
     let pieces = if is_lost { pieces.min(FEW_PIECES) } else { pieces };
-    let ends = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
-    search_pieces(shape, &near, ends, base, pieces, places)
+    let place = |t: F| (Interval::point(t) - base).high;
+    let ends = ((Interval::point(from) - base).low, place(to));
+    let first = possible.high.max(from + F::of(DOUBTFUL) * (to - from));
+    let first = if possible.low > zero && first < to { Some(place(first)) } else { None };
+    search_pieces(shape, &near, (ends, first), base, pieces, places)
 }
 
-/// Finds the first hit between two ends of a line whose parameter counts from `base`.
+/// Finds the first hit between two ends of a line whose parameter counts from `base`. The line is first cut at a place
+/// that is given.
 fn search_pieces<F: Float>(
     shape: &dyn Values<Interval<F>>,
     near: &Line<Interval<F>>,
-    (from, to): (F, F),
+    ((from, to), first): ((F, F), Option<F>),
     base: Interval<F>,
     pieces: usize,
     places: &mut Vec<f64>,
@@ -78,7 +103,10 @@ fn search_pieces<F: Float>(
     let shortest = F::of(8.0) * F::EPSILON * (to - from);
     let shortest_jump = shortest.max(F::of(JUMP) * (to - from));
     let search = Search { shape, line: near };
-    let mut pending = open_pieces(shape, near, (from, to));
+    let mut pending = match first {
+        Some(first) => [open_pieces(shape, near, (first, to)), vec![(from, first)]].concat(),
+        None => open_pieces(shape, near, (from, to)),
+    };
     for _ in 0..pieces {
         let Some((low, high)) = pending.pop() else { return HitEnclosure::Misses };
         let piece = Interval { low, high };
@@ -97,7 +125,12 @@ fn search_pieces<F: Float>(
                     return hit;
                 }
             }
-            Judgement::Open if high - low > shortest => pending.extend(cut(low, high)),
+            // A value that is exactly 0 where a short piece ends is hardly doubted less where a shorter one does.
+            Judgement::Open
+                if high - low > shortest_jump || high - low > shortest && !search.is_zero_at(high) =>
+            {
+                pending.extend(cut(low, high))
+            }
             Judgement::Jump if high - low > shortest_jump => pending.extend(cut(low, high)),
             // A root that is certainly cut off is no hit.
             Judgement::Open | Judgement::Jump => {
@@ -188,6 +221,10 @@ impl<F: Float> Search<'_, F> {
         self.shape.value(self.line.at(t))
     }
 
+    fn is_zero_at(&self, t: F) -> bool {
+        self.value(Interval::point(t)).is_zero()
+    }
+
     /// Encloses the value and its first derivative.
     fn slope(&self, t: Interval<F>) -> Dual<Interval<F>> {
         self.shape.slope(self.line.along(Dual::variable(t)))
@@ -213,6 +250,10 @@ impl<F: Float> Search<'_, F> {
         let Dual { value, slope } = self.slope(piece);
         if !value.has_zero() {
             return Judgement::Free;
+        }
+        // Where the value is 0 all along a piece, so it is along shorter ones.
+        if value.is_zero() {
+            return Judgement::Touch(piece);
         }
         // Without bounds of the value and the slope, no mean value theorem helps.
         if !(slope.is_bounded() && value.is_bounded()) {
@@ -358,7 +399,7 @@ mod tests {
             origin: [third(1e90), third(0.5), third(0.5)],
             dir: [third(-1.0), third(0.0), third(0.0)],
         };
-        let found = first_hit(&step, &line, false, 2000);
+        let found = first_hit(&step, &line, false, 2000, None);
         assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
         assert!(step.0.get() < 100, "{} evaluations", step.0.get());
     }
@@ -367,7 +408,7 @@ mod tests {
     fn a_jump_is_left_in_doubt_after_a_few_pieces() {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000) else {
+        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000, None) else {
             panic!("a jump is no root")
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");
@@ -392,11 +433,55 @@ mod tests {
     fn a_touch_is_left_in_doubt_after_a_few_pieces() {
         let squared = Squared(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, 2000) else {
+        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, 2000, None)
+        else {
             panic!("no digits tell a touch from a miss")
         };
         let third = f256::from(7.0) / f256::from(3.0);
         assert!(from <= third && third - from < f256::from(1e-30), "{from:?}");
         assert!(squared.0.get() < 100, "{} evaluations", squared.0.get());
+    }
+
+    #[test]
+    fn many_digits_are_spent_only_where_few_leave_a_hit_in_doubt() {
+        let step = Step(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
+        let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
+        let few = first_hit::<f64>(&step, &line, false, 2000, None);
+        step.0.set(0);
+        let possible = first_possible(few).map(Interval::<f256>::from_f64);
+        let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
+        let found = first_hit::<f256>(&step, &line, false, 2000, possible);
+        assert!(
+            matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 2.3).abs() < 1e-15),
+            "{found:?}"
+        );
+        assert!(step.0.get() < 40, "{} evaluations", step.0.get());
+    }
+
+    /// A formula that is 0 on one side of a plane, and the number of times that it was evaluated.
+    struct Half(Cell<usize>);
+
+    impl Equation for Half {
+        fn value<N: Scalar>(&self, [x, _, _]: [N; 3]) -> N {
+            self.0.set(self.0.get() + 1);
+            x.max(N::constant(0.0))
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn where_a_formula_is_0_all_along_a_piece_it_is_not_cut() {
+        let half = Half(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+        let found = first_hit(&half, &Line { origin, dir }, false, 2000, None);
+        assert!(
+            matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 1.0).abs() < 1e-15),
+            "{found:?}"
+        );
+        assert!(half.0.get() < 10, "{} evaluations", half.0.get());
     }
 }
