@@ -35,6 +35,7 @@ pub mod scalar;
 mod sines;
 pub mod spline;
 pub mod text;
+pub mod whole_line;
 
 pub use dual::Dual;
 pub use formula::Formula;

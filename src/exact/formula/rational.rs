@@ -45,6 +45,11 @@ impl Rational {
         Some(Self::new(above.digits, above.exponent - below.exponent, below.digits))
     }
 
+    /// Returns a number as an integer, the power of two that multiplies it, and the positive integer that divides it.
+    pub(crate) fn fraction(&self) -> (&IBig, i64, &IBig) {
+        (&self.numerators[0], self.exponent, &self.denominator)
+    }
+
     /// Returns whether the polynomial is constant.
     fn is_number(&self) -> bool {
         self.numerators.len() == 1
