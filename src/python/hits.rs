@@ -2,7 +2,7 @@
 
 use crate::arrays::{Rows, Vectors, View, numbers};
 use crate::work::{Course, How};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use numpy::ndarray::{Array2, ArrayView1};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -130,6 +130,12 @@ fn packet_size(is_tight: bool) -> usize {
 /// The answer to one ray, with the surface at its hit.
 type Told = (Answer, Option<Surroundings>);
 
+/// Adds the surface to an answer, and names the object by its number.
+fn told(query: &Query, ray: &ExactRay, answer: Answer) -> Told {
+    let surface = query.surroundings(ray, &answer);
+    (Answer { object: answer.object.map(|object| query.number(object)), ..answer }, surface)
+}
+
 /// The hits of rays: one array for each property, with one entry for each ray. An entry without a value is -1 or NaN.
 #[pyclass(frozen, subclass, module = "tabray", get_all)]
 pub struct Hits {
@@ -153,6 +159,8 @@ pub struct Hits {
     point: Py<PyArray2<f64>>,
     /// The unit normal of the shape there, rounded. (n, 3).
     normal: Py<PyArray2<f64>>,
+    /// The coordinates u and v there, where the shape has some, rounded. (n, 2).
+    uv: Py<PyArray2<f64>>,
 }
 
 /// The columns of the answers.
@@ -168,6 +176,7 @@ struct Columns {
     distance: Vec<f64>,
     point: Vec<f64>,
     normal: Vec<f64>,
+    uv: Vec<f64>,
 }
 
 impl Columns {
@@ -188,14 +197,16 @@ impl Columns {
         self.distance.push(answer.distance);
         self.point.extend(vector(surface.map(|surface| surface.point)));
         self.normal.extend(vector(surface.map(|surface| surface.normal)));
+        let uv = surface.and_then(|surface| surface.uv);
+        self.uv.extend(uv.unwrap_or(DVec2::NAN).to_array());
     }
 
     fn into_hits(self, py: Python<'_>) -> PyResult<Hits> {
         fn array<T: numpy::Element>(py: Python<'_>, of: Vec<T>) -> Py<PyArray1<T>> {
             of.into_pyarray(py).unbind()
         }
-        let rows = |of: Vec<f64>| {
-            let rows = Array2::from_shape_vec((of.len() / 3, 3), of);
+        let rows = |of: Vec<f64>, width: usize| {
+            let rows = Array2::from_shape_vec((of.len() / width, width), of);
             rows.map(|rows| rows.into_pyarray(py).unbind())
                 .map_err(|error| PyValueError::new_err(error.to_string()))
         };
@@ -208,8 +219,9 @@ impl Columns {
             t_low: array(py, self.t_low),
             t_high: array(py, self.t_high),
             distance: array(py, self.distance),
-            point: rows(self.point)?,
-            normal: rows(self.normal)?,
+            point: rows(self.point, 3)?,
+            normal: rows(self.normal, 3)?,
+            uv: rows(self.uv, 2)?,
         })
     }
 }
@@ -232,7 +244,7 @@ pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: Asked, how: &How)
         let packet = |_: usize, of: &[ExactRay], ends: &[f64]| -> Vec<Told> {
             let answers = if asked.fast { query.traced(of) } else { query.proven(of, asked.tight) };
             let ended = answers.into_iter().zip(ends).map(|(answer, end)| answer.within(*end));
-            ended.zip(of).map(|(answer, ray)| (answer, query.surroundings(ray, &answer))).collect()
+            ended.zip(of).map(|(answer, ray)| told(&query, ray, answer)).collect()
         };
         let size = packet_size(asked.tight);
         in_packets(course, &rays, size, packet, |told| columns.add(told)).map(|()| columns)
@@ -255,8 +267,8 @@ pub fn crossings(
         let packet = |first: usize, of: &[ExactRay], ends: &[f64]| {
             let of_ray = |(number, (ray, end)): (usize, (&ExactRay, &f64))| {
                 let crossings = query.crossings(ray, *end, is_tight).into_iter();
-                let told = |of: Crossing| (number, of.enters, (of.answer, query.surroundings_at(ray, &of)));
-                crossings.map(told).collect::<Vec<_>>()
+                let one = |of: Crossing| (number, of.enters, told(&query, ray, of.answer));
+                crossings.map(one).collect::<Vec<_>>()
             };
             (first..).zip(of.iter().zip(ends)).flat_map(of_ray).collect()
         };

@@ -105,11 +105,14 @@ pub fn render(py: Python<'_>, model: &Model, wanted: &Wanted, how: &How) -> PyRe
 
 /// Returns the first hits at the middles of all pixels.
 fn seen(renderer: &Renderer, plan: &Plan, stops: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Seen>> {
-    let [_, height] = plan.camera.pixels;
+    let ([_, height], numbers) = (plan.camera.pixels, plan.model.numbers());
     let pixel = |x: usize, y: usize| -> Seen {
         match trace::first_hit(plan, &plan.camera.sight(x as f64, y as f64)) {
             None => (f64::INFINITY, -1, [0.0; 3]),
-            Some(hit) => (hit.distance, hit.index as i32, hit.object.shape.normal(hit.point).to_array()),
+            Some(hit) => {
+                let normal = hit.object.shape.normal(hit.point);
+                (hit.distance, numbers[hit.index] as i32, normal.to_array())
+            }
         }
     };
     let done = || if stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };

@@ -289,7 +289,8 @@ impl Scene {
     /// The names of the objects that rays may hit, in the order of the indices in arrays.
     #[getter]
     fn objects(&self) -> Vec<&str> {
-        self.model.objects.iter().map(|object| object.args.name()).collect()
+        let entities = self.model.objects.chunk_by(|one, other| one.args.order() == other.args.order());
+        entities.map(|of| of[0].args.name()).collect()
     }
 
     /// The width and the height of the image in pixels; None without a camera.

@@ -41,7 +41,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Pixel {
     let verdict = match first {
         _ if !first.may_be(found) => Verdict::Contradicted,
         FirstHits::Certain(_) => Verdict::Proven,
-        FirstHits::OneOf { any, .. } if any.iter().all(|(index, _)| shape(*index).is_certified()) => {
+        FirstHits::OneOf { any, .. } if any.iter().all(|one| shape(one.object).is_certified()) => {
             Verdict::Tie
         }
         FirstHits::OneOf { .. } => Verdict::Uncertified,

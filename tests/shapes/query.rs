@@ -198,3 +198,144 @@ fn a_ray_through_an_edge_takes_about_as_long_in_a_large_mesh() {
     println!("{few:?} in 72 faces, {many:?} in 7,200");
     assert!(many < 10 * few, "{few:?}, {many:?}");
 }
+
+const EYE: &str = "look_at eye { pixeldim 4 3 position 0 0 9 target 0 0 0 angle 40 } material m { }\n";
+
+/// Beside the edge of two faces by less than rounding, the normal and u and v are those of the face that is named: in
+/// the mesh, in a copy of it, and with and without a proof.
+#[test]
+fn an_answer_is_a_record_of_one_face() {
+    let folder = folder();
+    let pair = "v 0 0 0\nv 1 0.25 0.125\nv 0.25 1 1\nv 0.5 -1 0.75\nf 1 2 3\nf 2 1 4\n";
+    fs::write(folder.path().join("pair.obj"), pair).expect("a file");
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.25, 0.125], [0.25, 1.0, 1.0], [0.5, -1.0, 0.75]].map(DVec3::from);
+    let faces = [[0, 1, 2], [1, 0, 3]];
+    let mut random = Random(Pcg64::new(3, 5));
+    for (shown, scale) in
+        [("", DVec3::ONE), ("place p { object pair scale 1 2 3 }", DVec3::new(1.0, 2.0, 3.0))]
+    {
+        let model =
+            model_in(folder.path(), &format!("{EYE} mesh pair {{ material m file pair.obj }} {shown}"));
+        let query = Query::new(&model);
+        let mut named = [0; 2];
+        for _ in 0..300 {
+            let along = 0.1 + 0.4 * (1.0 + random.part());
+            let edge = (1.0 - along) * corners[0] + along * corners[1];
+            let origin = DVec3::new(random.part(), 2.0 * random.part(), 5.0);
+            let ray = ExactRay::new(origin, scale * edge - origin).expect("a ray");
+            let rays = std::slice::from_ref(&ray);
+            for answer in [query.proven(rays, false)[0], query.traced(rays)[0]] {
+                let Some(surface) = query.surroundings(&ray, &answer) else { continue };
+                let face = surface.face.expect("a face") as usize;
+                let [a, b, c] = faces[face].map(|corner| scale * corners[corner]);
+                let normal = (b - a).cross(c - a).normalize();
+                assert!(surface.normal.dot(normal) > 1.0 - 1e-9, "{answer:?} {surface:?} {normal}");
+                let uv = surface.uv.expect("u and v");
+                let at = a + uv.x * (b - a) + uv.y * (c - a);
+                assert!((at - surface.point).length() < 1e-9, "{answer:?} {surface:?} {at}");
+                named[face] += 1;
+            }
+        }
+        assert!(named.iter().all(|count| *count > 50), "{named:?}");
+    }
+}
+
+/// Along a ray, crossings of a closed object enter and leave in turns, and between them the object tells the same of
+/// points. Nothing is left open but for rays that touch, and all of an object has one number.
+#[test]
+fn crossings_of_closed_objects_enter_and_leave_in_turns() {
+    let solids = [
+        ("a", "sphere a { material m center 0 0 0 radius 1 }"),
+        ("b", "box b { material m center 0.5 0 0 size 1 1 1 }"),
+        ("r", "torus r { material m center 0 0 0 radius 0.9 tube 0.3 }"),
+    ];
+    let cases = [
+        "sphere d { material m center 0.1 0 0 radius 1 }",
+        "box d { material m center 0 0.1 0 size 1 2 1.5 }",
+        "torus d { material m center 0 0 0 direction 0.3 0.1 1 radius 1 tube 0.4 }",
+        "ellipsoid d { material m center 0 0 0 radius 1 scale 1 1.5 0.5 }",
+        "cylinder d { material m base 0 -0.7 0 height 1.4 radius 0.8 }",
+        "capsule d { material m base 0 -0.5 0 height 1 radius 0.7 }",
+        "heart d { material m center 0 0 0 size 1 }",
+        "lathe d { material m points 0 0 0.5 0.8 1.2 0.6 1.6 0 base 0 -0.7 0 }",
+        "prism d { material m points 0 1.2 0.35 0.4 1.2 0.5 0.6 -0.6 -0.6 -0.8 -0.4 0.4 base 0 -0.5 0 height 0.9 }",
+        "implicit d { material m formula \"(x^2 + z^2)*(1 + y/4) + y^2/2 - 1\" box -1.1 -1.5 -1.1 1.1 1.5 1.1 }",
+        "sphere s { material m center 0 0 0 radius 1.2 }
+         implicit d { material m formula \"x^2 + y^2 - z^2 - 0.1\" clip s capped yes }",
+        "torus t { material m center 0 0 0 radius 0.8 tube 0.3 }
+         place d { object t rotation 20 30 40 scale 1 0.5 1.5 translation 0.2 0 0 }",
+        "mesh d { material m file box.obj }",
+        "mesh d { material m file box.obj scale -1 1 1 }",
+        "union d { material m objects a b }",
+        "union d { material m objects a r }",
+        "difference d { objects a b }",
+        "difference d { objects b a r }",
+        "intersection d { objects a b }",
+        "difference c { objects a r } union d { objects c b }",
+        "difference c { objects a b } place d { object c rotation 0 40 10 scale 1 2 1 }",
+    ];
+    let folder = folder();
+    let box_of = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+        f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    fs::write(folder.path().join("box.obj"), box_of).expect("a file");
+    let mut random = Random(Pcg64::new(4, 5));
+    for case in cases {
+        let is_used = |name: &str| case.contains("objects") && case.split(' ').any(|word| word == name);
+        let used: String = solids.iter().filter(|(name, _)| is_used(name)).map(|(_, text)| *text).collect();
+        let model = model_in(folder.path(), &format!("{EYE}{used}\n{case}"));
+        let query = Query::new(&model);
+        assert_eq!(query.number(model.objects.len() - 1), 0, "{case}");
+        let (mut crossed, mut open) = (0, 0);
+        for _ in 0..150 {
+            let origin = 3.0 * random.vector();
+            let ray = ExactRay::new(origin, random.vector() - origin).expect("a ray");
+            let mut crossings = query.crossings(&ray, f64::INFINITY, false);
+            let end = crossings.pop().expect("what is behind").answer;
+            open += u32::from(end.verdict != Verdict::Miss);
+            let shape = query.shape(0);
+            let contains = |from: f64, to: f64| shape.contains(ray.at(0.5 * (from + to)), 1e-12);
+            let mut from = 0.0;
+            for crossing in &crossings {
+                let enters = crossing.enters.expect("it is closed");
+                let inside = contains(from, crossing.answer.distance);
+                assert!(inside.is_none_or(|inside| inside != enters), "{case}: {ray:?} {crossing:?}");
+                from = crossing.answer.distance;
+            }
+            let turns = crossings.windows(2).all(|pair| pair[0].enters != pair[1].enters);
+            assert!(turns, "{case}: {ray:?} {crossings:?}");
+            if end.verdict == Verdict::Miss {
+                assert!(crossings.last().is_none_or(|last| last.enters == Some(false)), "{case}: {ray:?}");
+            }
+            crossed += crossings.len();
+        }
+        assert!(crossed > 40 && open <= 1, "{case}: {crossed} crossings, {open} open");
+    }
+}
+
+/// Through vertices and along edges of a closed mesh, each ray is decided, and enters and leaves in turns. A ray that
+/// only touches an edge hits it, and what lies behind is left open.
+#[test]
+fn rays_through_vertices_and_edges_are_decided() {
+    let model = model(&format!("{EYE} box b {{ material m center 0 0 0 size 2 2 2 }}"));
+    let query = Query::new(&model);
+    for (origin, dir, hits) in [
+        ([3.0, 3.0, 3.0], [-1.0, -1.0, -1.0], Some([2.0, 4.0])),
+        ([3.0, 3.0, 0.25], [-1.0, -1.0, 0.0], Some([2.0, 4.0])),
+        ([3.0, 0.5, 0.5], [-1.0, 0.0, 0.0], Some([2.0, 4.0])),
+        ([3.0, 3.0, 0.5], [-0.5, -0.5, 0.0], Some([4.0, 8.0])),
+        ([2.0, 0.0, 0.5], [-1.0, 1.0, 0.0], None),
+        ([3.0, 1.0, 0.0], [-1.0, 0.0, 0.0], None),
+    ] {
+        let ray = ExactRay::new(origin.into(), dir.into()).expect("a ray");
+        let first = query.proven(std::slice::from_ref(&ray), false)[0];
+        assert_eq!(first.verdict, Verdict::Hit, "{origin:?}");
+        let crossings = query.crossings(&ray, f64::INFINITY, false);
+        let found: Vec<_> = crossings.iter().map(|of| (of.answer.verdict, of.answer.t, of.enters)).collect();
+        if let Some([enters, leaves]) = hits {
+            assert_eq!(first.t, enters);
+            let right = [(Verdict::Hit, enters, Some(true)), (Verdict::Hit, leaves, Some(false))];
+            assert_eq!(found[..2], right, "{origin:?} {found:?}");
+            assert_eq!((found.len(), found[2].0), (3, Verdict::Miss));
+        }
+    }
+}

@@ -62,6 +62,11 @@ pub struct Line<N> {
 }
 
 impl<F: Float> Line<Interval<F>> {
+    /// Tells whether all numbers of the line are known exactly.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.origin.iter().chain(&self.dir).all(|of| of.low == of.high)
+    }
+
     /// Returns bounds of the t, from 0 on, at which the line is in a box, given by its low and its high corner, or
     /// `None` if the line certainly misses the box.
     pub fn clip(&self, low: DVec3, high: DVec3) -> Option<(F, F)> {

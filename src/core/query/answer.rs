@@ -31,6 +31,8 @@ pub struct Answer {
     pub proof: Option<Precision>,
     /// The object by its index; the first of several in the scene. `None` where nothing is hit.
     pub object: Option<usize>,
+    /// The part of the object that the proof names, such as a face, by its index among the parts of its proofs.
+    pub part: Option<usize>,
     /// The t of the hit, in the ray's own unit; NaN where there is none.
     pub t: f64,
     /// Bounds of the real t. Without a proof they are -∞ and ∞.
@@ -39,7 +41,7 @@ pub struct Answer {
     pub distance: f64,
 }
 
-/// The surface at a hit, rounded.
+/// The surface at a hit, rounded. All of it is that of one face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surroundings {
     /// The point, in world units.
@@ -56,29 +58,36 @@ impl Answer {
     /// Returns the answer that nothing is hit.
     pub(super) fn miss(proof: Option<Precision>) -> Self {
         let bounds = Interval { low: f64::NAN, high: f64::NAN };
-        Self { verdict: Verdict::Miss, proof, object: None, t: f64::NAN, bounds, distance: f64::NAN }
+        let (t, distance) = (f64::NAN, f64::NAN);
+        Self { verdict: Verdict::Miss, proof, object: None, part: None, t, bounds, distance }
     }
 
     /// Returns what is proven about a hit in these bounds, in lengths of the sight's direction.
     pub(super) fn at(
         ray: &ExactRay,
         verdict: Verdict,
-        object: Option<usize>,
+        (object, part): (Option<usize>, Option<usize>),
         at: Wide,
         precision: Precision,
     ) -> Self {
         let bounds = ray.t(at);
         let t = if at.high.is_finite() { ray.rounded_t(at.middle()) } else { f64::NAN };
         let distance = certify::in_world_units(at, ray.sight()).high;
-        Self { verdict, proof: Some(precision), object, t, bounds, distance }
+        Self { verdict, proof: Some(precision), object, part, t, bounds, distance }
     }
 
-    /// Returns what 53 bits prove about a hit in these bounds of the ray's t, at the distance that the tracer found.
-    pub(super) fn traced(ray: &ExactRay, object: usize, bounds: Interval, distance: f64) -> Self {
-        let proof = Some(Precision::Double);
-        let known =
-            Self { verdict: Verdict::Hit, proof, object: Some(object), t: f64::NAN, bounds, distance };
-        known.near(ray.t_at(distance), distance)
+    /// Returns what 53 bits prove about a hit of a part in these bounds of the ray's t, at the distance that the tracer
+    /// found.
+    pub(super) fn traced(
+        ray: &ExactRay,
+        (object, part): (usize, usize),
+        bounds: Interval,
+        distance: f64,
+    ) -> Self {
+        let (verdict, proof) = (Verdict::Hit, Some(Precision::Double));
+        let (object, part) = (Some(object), Some(part));
+        Self { verdict, proof, object, part, t: f64::NAN, bounds, distance }
+            .near(ray.t_at(distance), distance)
     }
 
     /// Returns the answer with its hit at a t, or as near to it as the bounds allow.
@@ -108,6 +117,6 @@ impl Answer {
         let is_certain =
             matches!(self.verdict, Verdict::Tie | Verdict::Undecided) && self.bounds.high < t_max;
         let verdict = if is_certain { Verdict::Hit } else { self.verdict };
-        Self { object: None, ..Self { verdict, ..self }.within(t_max) }
+        Self { object: None, part: None, ..Self { verdict, ..self }.within(t_max) }
     }
 }

@@ -6,15 +6,37 @@ use crate::world::certify::{Enclosure, Precision};
 use f256::f256;
 use tabray_exact::interval::{Float, Wide};
 
+/// The certain first hit of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// The object, by its index.
+    pub object: usize,
+    /// The part of the object that is hit, of which [`AnyShape::surface_hit`] tells more.
+    pub part: usize,
+    /// Bounds of the distance.
+    pub at: Wide,
+}
+
+/// What is proven about a ray's first hit of an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// The object, by its index.
+    pub object: usize,
+    /// The part of the object that is hit first, if one is.
+    pub part: usize,
+    /// The proof.
+    pub enclosure: Enclosure,
+}
+
 /// The objects that a ray may hit first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FirstHits {
-    /// Certainly this object, by its index, with bounds of its distance, or certainly nothing.
-    Certain(Option<(usize, Wide)>),
+    /// Certainly this object, or certainly nothing.
+    Certain(Option<FirstHit>),
     /// One of several objects, or perhaps nothing.
     OneOf {
-        /// The objects, in the order of their indices, each with the proof of its hit.
-        any: Vec<(usize, Enclosure)>,
+        /// The objects, in the order of their indices.
+        any: Vec<Candidate>,
         /// A distance up to which something is certainly hit; infinite where perhaps nothing is.
         end: f256,
     },
@@ -24,8 +46,8 @@ impl FirstHits {
     /// Tells whether an object may be hit first, or, for `None`, whether nothing may be hit.
     pub fn may_be(&self, found: Option<usize>) -> bool {
         match (self, found) {
-            (Self::Certain(first), _) => first.map(|(index, _)| index) == found,
-            (Self::OneOf { any, .. }, Some(found)) => any.iter().any(|(index, _)| *index == found),
+            (Self::Certain(first), _) => first.map(|first| first.object) == found,
+            (Self::OneOf { any, .. }, Some(found)) => any.iter().any(|one| one.object == found),
             (Self::OneOf { end, .. }, None) => !end.is_finite(),
         }
     }
@@ -39,11 +61,14 @@ pub fn first_of<'s>(
     sight: &Sight,
 ) -> (FirstHits, Precision) {
     let objects: Vec<_> = objects.into_iter().collect();
-    let certify = |(index, shape): &(usize, &AnyShape), precision| (*index, shape.certify(sight, precision));
+    let certify = |(object, shape): &(usize, &AnyShape), precision| {
+        let (enclosure, part) = shape.certify_part(sight, precision);
+        Candidate { object: *object, part, enclosure }
+    };
     let all: Vec<_> = objects.iter().map(|object| certify(object, Precision::Double)).collect();
     match first(&all) {
         FirstHits::OneOf { any, .. } => {
-            let is_open = |(index, _): &&(usize, &AnyShape)| any.iter().any(|(open, _)| open == index);
+            let is_open = |(index, _): &&(usize, &AnyShape)| any.iter().any(|open| open.object == *index);
             let any: Vec<_> =
                 objects.iter().filter(is_open).map(|object| certify(object, Precision::Octuple)).collect();
             (first(&any), Precision::Octuple)
@@ -61,24 +86,26 @@ pub fn last_end<'s>(objects: impl IntoIterator<Item = (usize, &'s AnyShape)>, si
     ends.fold(f256::INFINITY, Float::min)
 }
 
-/// Returns which of the objects may be hit first, given an enclosure of each object's distance.
-fn first(enclosures: &[(usize, Enclosure)]) -> FirstHits {
+/// Returns which of the objects may be hit first, given what is proven about each.
+fn first(candidates: &[Candidate]) -> FirstHits {
     // Some object is certainly hit at this distance or nearer.
-    let end = enclosures.iter().filter_map(|(_, enclosure)| match enclosure {
+    let end = candidates.iter().filter_map(|of| match of.enclosure {
         Enclosure::Hits(at) => Some(at.high),
         _ => None,
     });
     let end = end.fold(f256::INFINITY, Float::min);
-    let is_near = |(_, enclosure): &&(usize, Enclosure)| match enclosure {
+    let is_near = |of: &&Candidate| match of.enclosure {
         Enclosure::Misses => false,
         Enclosure::Hits(Wide { low, .. }) | Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => {
-            *low <= end
+            low <= end
         }
     };
-    let any: Vec<_> = enclosures.iter().filter(is_near).copied().collect();
+    let any: Vec<_> = candidates.iter().filter(is_near).copied().collect();
     match any[..] {
         [] => FirstHits::Certain(None),
-        [(index, Enclosure::Hits(at))] => FirstHits::Certain(Some((index, at))),
+        [Candidate { object, part, enclosure: Enclosure::Hits(at) }] => {
+            FirstHits::Certain(Some(FirstHit { object, part, at }))
+        }
         _ => FirstHits::OneOf { any, end },
     }
 }
@@ -109,7 +136,9 @@ mod tests {
             (&[doubtful(1.5), near], &[Some(0), Some(1)]),
             (&[doubtful(1.5)], &[None, Some(0)]),
         ] {
-            let numbered: Vec<_> = enclosures.iter().copied().enumerate().collect();
+            let numbered = (0..).zip(enclosures);
+            let numbered: Vec<_> =
+                numbered.map(|(object, of)| Candidate { object, part: 0, enclosure: *of }).collect();
             let found = first(&numbered);
             let may_be: Vec<_> =
                 [None, Some(0), Some(1), Some(2)].into_iter().filter(|index| found.may_be(*index)).collect();

@@ -11,8 +11,8 @@
 //! # }
 //! let ray = tabray_core::query::ExactRay::new(DVec3::new(5.0, 0.0, 0.0), DVec3::new(-2.0, 0.0, 0.0)).expect("a ray");
 //! let ball = Body::implicit(Ball, Frame::at(DVec3::ZERO)).shape;
-//! let (FirstHits::Certain(Some((0, at))), _) = first_of([(0, &ball)], ray.sight()) else { panic!("the ball is hit") };
-//! let t = ray.t(at);
+//! let (FirstHits::Certain(Some(hit)), _) = first_of([(0, &ball)], ray.sight()) else { panic!("the ball is hit") };
+//! let t = ray.t(hit.at);
 //! assert!(t.low <= 1.5 && 1.5 <= t.high);
 //! ```
 

@@ -1,7 +1,7 @@
 //! Queries about the hits of rays in a scene.
 
 use super::answer::{Answer, Surroundings, Verdict};
-use super::first::{FirstHits, first_of, last_end};
+use super::first::{Candidate, FirstHit, FirstHits, first_of, last_end};
 use super::ray::ExactRay;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::sight::Line;
@@ -10,25 +10,33 @@ use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
 use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, HitEnclosure, Precise, Precision};
+use crate::world::certify::{Enclosure, Precision};
 use crate::world::hittable::SurfaceHit;
 use f256::f256;
-use tabray_exact::interval::{Float, Fraction, Interval, Wide};
+use std::slice;
+use tabray_exact::interval::{Float, Interval, Wide};
 
 /// A scene, prepared for queries about hits.
 pub struct Query<'m> {
     plan: Plan<'m>,
+    /// For each object of the model, the number of its entity among those of all objects.
+    numbers: Vec<usize>,
 }
 
 impl<'m> Query<'m> {
     /// Prepares a scene: many objects get a tree. The rays need not be its camera's.
     pub fn new(model: &'m Model) -> Self {
-        Self { plan: Plan::new(model) }
+        Self { plan: Plan::new(model), numbers: model.numbers() }
     }
 
     /// Returns the scene.
     pub fn model(&self) -> &'m Model {
         self.plan.model
+    }
+
+    /// Returns the number of an object, from 0: objects of the model that are parts of one solid have one number.
+    pub fn number(&self, object: usize) -> usize {
+        self.numbers[object]
     }
 
     /// Returns the ray through the middle of a pixel of the scene's camera, by column and row from the lower left
@@ -39,8 +47,12 @@ impl<'m> Query<'m> {
 
     /// Finds the first hit of each ray as the tracer does, many rays at a time.
     pub fn first_hits(&self, rays: &[ExactRay]) -> Vec<Option<Hit<'m>>> {
+        self.found(rays, true)
+    }
+
+    fn found(&self, rays: &[ExactRay], decides: bool) -> Vec<Option<Hit<'m>>> {
         let sights: Vec<_> = rays.iter().map(|ray| ray.sight().clone()).collect();
-        trace::first_hits(&self.plan, &sights)
+        trace::first_hits(&self.plan, &sights, decides)
     }
 
     /// Proves what a ray hits first. `found` is what the tracer finds, where that is known; the proof does not depend
@@ -84,6 +96,7 @@ impl Query<'_> {
                 verdict: Verdict::Hit,
                 proof: None,
                 object: Some(index),
+                part: None,
                 t: ray.t_at(distance),
                 bounds: Interval { low: f64::NEG_INFINITY, high: f64::INFINITY },
                 distance,
@@ -95,7 +108,8 @@ impl Query<'_> {
     /// Returns what is proven about the first hits of rays. With 53 bits, bounds are some units in the last place of
     /// t wide. `is_tight` narrows them with 237 bits, which takes many times as long.
     pub fn proven(&self, rays: &[ExactRay], is_tight: bool) -> Vec<Answer> {
-        let found = self.first_hits(rays);
+        // The tracer's own proofs would be made twice.
+        let found = self.found(rays, false);
         rays.iter().zip(found).map(|(ray, found)| self.proof(ray, found.as_ref(), is_tight)).collect()
     }
 
@@ -107,72 +121,64 @@ impl Query<'_> {
 
     fn proof(&self, ray: &ExactRay, found: Option<&Hit>, is_tight: bool) -> Answer {
         let (first, precision) = self.first(ray, found);
-        let answer = |verdict, object, at, precision| Answer::at(ray, verdict, object, at, precision);
         let (any, end) = match first {
             FirstHits::Certain(None) => return Answer::miss(Some(precision)),
-            FirstHits::Certain(Some((object, at))) => {
+            FirstHits::Certain(Some(FirstHit { object, part, at })) => {
+                let hit = |part, at, precision| {
+                    Answer::at(ray, Verdict::Hit, (Some(object), Some(part)), at, precision)
+                };
                 if is_tight
                     && precision == Precision::Double
-                    && let Enclosure::Hits(at) = self.shape(object).certify(ray.sight(), Precision::Octuple)
+                    && let (Enclosure::Hits(at), part) =
+                        self.shape(object).certify_part(ray.sight(), Precision::Octuple)
                 {
-                    return answer(Verdict::Hit, Some(object), at, Precision::Octuple);
+                    return hit(part, at, Precision::Octuple);
                 }
                 let same = found.filter(|hit| hit.index == object && precision == Precision::Double);
                 // The tracer's distance is more accurate than the middle of bounds by 53 bits.
                 return match same {
-                    Some(Hit { distance, .. }) => Answer::traced(ray, object, ray.t(at), *distance),
-                    None => answer(Verdict::Hit, Some(object), at, precision),
+                    Some(Hit { distance, .. }) => Answer::traced(ray, (object, part), ray.t(at), *distance),
+                    None => hit(part, at, precision),
                 };
             }
             FirstHits::OneOf { any, end } => (any, end),
         };
-        let low = any.iter().filter_map(|(_, enclosure)| match enclosure {
+        let low = any.iter().filter_map(|one| match one.enclosure {
             Enclosure::Misses => None,
             Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at.low),
-            Enclosure::Doubtful(from) => Some(*from),
+            Enclosure::Doubtful(from) => Some(from),
         });
         let low = low.fold(end, Float::min);
-        let first = any.first().map(|(index, _)| *index);
-        if let [(object, Enclosure::Edge(at))] = any[..] {
-            return answer(Verdict::Edge, Some(object), at, precision);
+        let first = any.first().map_or((None, None), |one| (Some(one.object), Some(one.part)));
+        if let [Candidate { enclosure: Enclosure::Edge(at), .. }] = any[..] {
+            return Answer::at(ray, Verdict::Edge, first, at, precision);
         }
-        if any.iter().all(|(_, enclosure)| matches!(enclosure, Enclosure::Hits(_))) {
-            return answer(Verdict::Tie, first, Wide { low, high: end }, precision);
+        if any.iter().all(|one| matches!(one.enclosure, Enclosure::Hits(_))) {
+            // At an edge of a solid, its parts are hit at once.
+            let is_one = any.iter().all(|one| self.number(one.object) == self.number(any[0].object));
+            let verdict = if is_one { Verdict::Hit } else { Verdict::Tie };
+            return Answer::at(ray, verdict, first, Wide { low, high: end }, precision);
         }
         // The tracer finds one of the objects in question.
-        let (object, at) = (found.map(|hit| hit.index), Wide { low, high: end });
-        let open = answer(Verdict::Undecided, object, at, precision);
+        let found = self.first_hits(slice::from_ref(ray)).pop().flatten();
+        let (object, at) = (found.as_ref().map(|hit| hit.index), Wide { low, high: end });
+        let open = Answer::at(ray, Verdict::Undecided, (object, None), at, precision);
         match found {
             None => open,
-            Some(Hit { distance, .. }) => open.near(ray.t_at(*distance), *distance),
+            Some(Hit { distance, .. }) => open.near(ray.t_at(distance), distance),
         }
     }
 
-    /// Returns the surface at the hit of an answer; `None` for an answer without a hit. If a first hit is proven, so
-    /// is its face, where the shape's faces are parts of its proofs. Where the ray passes through an edge, the face
-    /// is one of those that share the edge.
+    /// Returns the surface at the hit of an answer; `None` for an answer without a hit. It is that of the part that the
+    /// proof names, or without a proof, of the one that the tracer finds. Where the ray passes through an edge, that is
+    /// one of those that share the edge.
     pub fn surroundings(&self, ray: &ExactRay, answer: &Answer) -> Option<Surroundings> {
         let shape = self.shape(answer.object.filter(|_| answer.distance.is_finite())?);
         let point = ray.at(answer.distance);
-        let proven = answer.proof.filter(|_| answer.verdict == Verdict::Hit).and_then(|_| {
-            let by_more =
-                || face::<f256>(shape, ray, answer).or_else(|| face::<Fraction>(shape, ray, answer));
-            face::<f64>(shape, ray, answer).or_else(by_more)
-        });
-        let SurfaceHit { normal, uv, face } = shape.surface_hit(&ray.sight().ray(), answer.distance, point);
-        Some(Surroundings { point, normal, uv, face: proven.or(face) })
+        let SurfaceHit { normal, uv, face } =
+            shape.surface_hit(&ray.sight().ray(), answer.distance, point, answer.part);
+        Some(Surroundings { point, normal, uv, face })
     }
-}
-
-/// Returns the face of a shape that a ray certainly hits first, if that is the hit of an answer.
-fn face<F: Precise>(shape: &AnyShape, ray: &ExactRay, answer: &Answer) -> Option<u32> {
-    let proofs = F::proofs(shape.proven()?);
-    // Most shapes have no faces.
-    proofs.face_of(0)?;
-    let (HitEnclosure::Hits(at), part) = proofs.first_hit(&ray.sight().line(), None) else { return None };
-    let bounds = ray.t(F::widen(at).wide());
-    let is_this = bounds.low <= answer.bounds.high && answer.bounds.low <= bounds.high;
-    proofs.face_of(part).filter(|_| is_this)
 }
 
 /// Returns a lower bound on the distance at which a line is in a box, which is widened for its rounding; `None` if it

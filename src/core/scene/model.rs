@@ -13,6 +13,7 @@ use crate::world::sensor::Sensor;
 use crate::world::surface_point::SurfacePoint;
 use crate::world::texture::Texture;
 use glam::DVec3;
+use std::iter::repeat_n;
 use std::path::PathBuf;
 use std::ptr;
 use std::sync::Arc;
@@ -63,6 +64,13 @@ impl Model {
             }
             Kind::Background => self.background.iter().map(|item| &item.args).collect(),
         }
+    }
+
+    /// Returns for each object the number of its entity among those of all objects, from 0. A solid appears as several
+    /// objects, which have one number.
+    pub fn numbers(&self) -> Vec<usize> {
+        let entities = self.objects.chunk_by(|one, other| one.args.order() == other.args.order());
+        entities.enumerate().flat_map(|(number, of)| repeat_n(number, of.len())).collect()
     }
 
     /// Returns the objects that read files, in the order of the scene.

@@ -7,7 +7,7 @@ use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Premise, ProofMethods};
-use crate::world::hittable::{Facts, Hittable, Shape, Sides};
+use crate::world::hittable::{Facts, Hittable, Shape, Sides, SurfaceHit};
 use crate::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
 use glam::DVec3;
 use std::ops::Deref;
@@ -106,6 +106,12 @@ impl AnyShape {
         self.shape.is_of_solid()
     }
 
+    /// Tells whether rays that cross the surface enter and leave a body: that of the shape, or the closed solid whose
+    /// surface it is a part of.
+    pub fn bounds_body(&self) -> bool {
+        self.why_not_closed().is_none() || self.shape.is_of_closed_solid()
+    }
+
     /// Returns the plane that contains all of a closed shape's surface within an error, in world units, of a point;
     /// `None` where that is not known.
     pub fn facet(&self, at: DVec3, error: f64) -> Option<Facet> {
@@ -128,9 +134,23 @@ impl AnyShape {
 
     /// Returns what is proven about a ray's first hit.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        let found = self.shape.certify(sight, precision);
+        self.certify_part(sight, precision).0
+    }
+
+    /// Returns what is proven about a ray's first hit, and the part of the shape that is hit, of which
+    /// [`surface_hit`](Self::surface_hit) tells the normal, u and v, and the face.
+    pub fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+        let (found, part) = self.shape.certify_part(sight, precision);
         let is_open = precision == Precision::Octuple && matches!(found, Enclosure::Doubtful(_));
-        if is_open && self.is_parallel(sight) { Enclosure::Misses } else { found }
+        (if is_open && self.is_parallel(sight) { Enclosure::Misses } else { found }, part)
+    }
+
+    /// Returns the surface at the point where a ray hits the shape, at a distance in world units: that of the part that
+    /// a proof names, or of the one that the tracer finds.
+    pub fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> SurfaceHit {
+        let by_point =
+            || SurfaceHit { normal: self.normal(at), uv: self.uv(at), face: self.face_hit(ray, distance) };
+        self.shape.surface_hit(ray, distance, at, part).unwrap_or_else(by_point)
     }
 
     /// Tells whether a ray is parallel to an unbounded shape, as the rays of a row of pixels at the horizon are to a

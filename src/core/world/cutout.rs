@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Assumption, Enclosure, Precision, Premise};
 use crate::world::coincidence::ROUNDING;
-use crate::world::hittable::{ByDistance, Curvature, Facts, Hittable, Shape, TieBreaking};
+use crate::world::hittable::{ByDistance, Curvature, Facts, Hittable, Shape, SurfaceHit, TieBreaking};
 use crate::world::packets::shader::PacketShader;
 use crate::world::packets::shape::HitQueries;
 use crate::world::surface_point::SurfacePoint;
@@ -148,6 +148,10 @@ impl HitQueries for Shape<Cutout, ByDistance, ByWhole> {
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         self.shape.shape.premises(of, each);
         each("cutout", Premise::NoEquation);
+    }
+
+    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {
+        Some(self.shape.shape.surface_hit(ray, distance, at, part))
     }
 
     /// A ray that misses the whole shape misses what is left of it.

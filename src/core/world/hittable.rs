@@ -95,13 +95,6 @@ pub trait Hittable: Send + Sync {
         self.face(ray.at(distance))
     }
 
-    /// Returns the results of [`normal`](Self::normal), [`uv`](Self::uv) and [`face_hit`](Self::face_hit) for the
-    /// point at which a ray hits the shape, at a distance in world units. A shape of many faces finds the face only
-    /// once.
-    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3) -> SurfaceHit {
-        SurfaceHit { normal: self.normal(at), uv: self.uv(at), face: self.face_hit(ray, distance) }
-    }
-
     /// Passes to a function the numbers that proofs about the shape treat as exact, although they were computed from
     /// the numbers of the scene and rounded.
     fn assumes(&self, _each: &mut dyn FnMut(Assumption)) {}

@@ -4,8 +4,7 @@ use super::npy;
 use serde::Serialize;
 use std::io::{self, Write};
 use tabray_core::output;
-use tabray_core::query::{Answer, Surroundings, Verdict};
-use tabray_core::scene::model::Model;
+use tabray_core::query::{Answer, Query, Surroundings, Verdict};
 use tabray_core::text;
 use tabray_core::world::certify::Precision;
 
@@ -21,8 +20,8 @@ pub enum AnswerFormat {
 }
 
 /// An answer to be written.
-pub(super) struct Answered<'m> {
-    pub model: &'m Model,
+pub(super) struct Answered<'q, 'm> {
+    pub query: &'q Query<'m>,
     /// The index of the ray, where a ray may have several answers.
     pub ray: Option<u64>,
     pub answer: Answer,
@@ -98,9 +97,9 @@ fn bits(proof: Option<Precision>) -> u8 {
     }
 }
 
-impl<'m> Answered<'m> {
+impl<'m> Answered<'_, 'm> {
     fn line(&self) -> Line<'m> {
-        let Self { model, ray, answer, enters, surface } = self;
+        let Self { query, ray, answer, enters, surface } = self;
         let there = |number: f64| number.is_finite().then_some(number);
         let proof = match answer.proof {
             None => "none",
@@ -112,8 +111,8 @@ impl<'m> Answered<'m> {
             enters: *enters,
             verdict: name(answer.verdict),
             proof,
-            object: answer.object.map(|index| model.objects[index].args.name()),
-            number: answer.object,
+            object: answer.object.map(|index| query.model().objects[index].args.name()),
+            number: answer.object.map(|index| query.number(index)),
             face: surface.and_then(|surface| surface.face),
             t: there(answer.t),
             t_low: there(answer.bounds.low),
@@ -126,12 +125,12 @@ impl<'m> Answered<'m> {
     }
 
     fn record(&self) -> npy::Record {
-        let Self { answer, surface, .. } = self;
+        let Self { query, answer, surface, .. } = self;
         let none = [f64::NAN; 3];
         npy::Record {
             verdict: code(answer.verdict),
             proof: bits(answer.proof),
-            object: answer.object.map_or(-1, |index| index as i32),
+            object: answer.object.map_or(-1, |index| query.number(index) as i32),
             face: surface.and_then(|surface| surface.face).map_or(-1, |face| face as i32),
             along: [answer.t, answer.bounds.low, answer.bounds.high, answer.distance],
             point: surface.map_or(none, |surface| surface.point.to_array()),
@@ -160,7 +159,10 @@ impl AnswerFormat {
     }
 
     /// Returns the text or the bytes of some answers.
-    pub(super) fn written<'m>(self, answers: impl Iterator<Item = Answered<'m>>) -> io::Result<Vec<u8>> {
+    pub(super) fn written<'q, 'm: 'q>(
+        self,
+        answers: impl Iterator<Item = Answered<'q, 'm>>,
+    ) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         match self {
             Self::JsonLines => {

@@ -266,7 +266,7 @@ fn finding(query: &Query, theirs: &TheirAnswer, ours: &Answer, tolerance: f64) -
 fn of_names(query: &Query, theirs: &TheirAnswer, ours: &Answer, tolerance: f64) -> Finding {
     let is_other = |object: usize| match &theirs.object {
         None => false,
-        Some(Object::Number(number)) => *number != object,
+        Some(Object::Number(number)) => *number != query.number(object),
         Some(Object::Name(name)) => query.model().objects[object].args.name() != name,
     };
     if ours.object.is_some_and(is_other) {

@@ -141,10 +141,9 @@ fn answer(
         if asked.all {
             let first = first + (index * PACKET_SIZE) as u64;
             let of_ray = |(number, (ray, end)): (u64, &Ray)| {
-                let of = |crossing: Crossing| {
-                    let surface = query.surroundings_at(ray, &crossing);
-                    let Crossing { answer, enters, .. } = crossing;
-                    Answered { model: query.model(), ray: Some(number), answer, enters, surface }
+                let of = |Crossing { answer, enters }: Crossing| {
+                    let surface = query.surroundings(ray, &answer);
+                    Answered { query, ray: Some(number), answer, enters, surface }
                 };
                 query.crossings(ray, *end, asked.tight).into_iter().map(of).collect::<Vec<_>>()
             };
@@ -158,7 +157,7 @@ fn answer(
         });
         format.written(of.iter().zip(ended).map(|(ray, answer)| {
             let surface = query.surroundings(ray, &answer);
-            Answered { model: query.model(), ray: None, answer, enters: None, surface }
+            Answered { query, ray: None, answer, enters: None, surface }
         }))
     };
     let packets: Vec<_> = renderer.run(|| rays.par_chunks(PACKET_SIZE).enumerate().map(packet).collect());

@@ -195,11 +195,12 @@ fn traced(
 
 /// Finds the first hit of a primary ray.
 pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
-    first_hits(plan, slice::from_ref(sight)).pop().flatten()
+    first_hits(plan, slice::from_ref(sight), true).pop().flatten()
 }
 
-/// Finds the first hits of primary rays, up to [`PACKET_SIZE`] together.
-pub fn first_hits<'m>(plan: &Plan<'m>, sights: &[Sight]) -> Vec<Option<Hit<'m>>> {
+/// Finds the first hits of primary rays, up to [`PACKET_SIZE`] together. `decides` tells whether proofs decide what the
+/// rounded rays leave open.
+pub fn first_hits<'m>(plan: &Plan<'m>, sights: &[Sight], decides: bool) -> Vec<Option<Hit<'m>>> {
     let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
     let (mut group, mut part) = (RayGroup::default(), RayGroup::default());
@@ -207,6 +208,9 @@ pub fn first_hits<'m>(plan: &Plan<'m>, sights: &[Sight]) -> Vec<Option<Hit<'m>>>
     let (mut distances, mut found) = (Vec::new(), Vec::new());
     for sights in sights.chunks(PACKET_SIZE) {
         group.become_sights(sights, None);
+        if !decides {
+            group.forget_sights();
+        }
         tracer.closest(&mut group, None, &mut hits);
         let first = found.len();
         found.resize_with(first + sights.len(), || None);
@@ -216,7 +220,9 @@ pub fn first_hits<'m>(plan: &Plan<'m>, sights: &[Sight]) -> Vec<Option<Hit<'m>>>
             part.gather(&group, lanes);
             gather(&mut near, &hits.near, lanes, part.padded());
             gather(&mut far, &hits.far, lanes, part.padded());
-            part.sights.extend(lanes.iter().map(|lane| sights[usize::from(*lane)].clone()));
+            if decides {
+                part.sights.extend(lanes.iter().map(|lane| sights[usize::from(*lane)].clone()));
+            }
             tracer.refine(&part, (&near, &far), index, &mut distances);
             for (lane, distance) in lanes.iter().zip(&distances) {
                 let (lane, distance) = (usize::from(*lane), *distance);

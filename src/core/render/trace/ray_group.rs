@@ -141,7 +141,7 @@ impl RayGroup {
     }
 
     /// Marks the rays as known only by their rounded numbers.
-    fn forget_sights(&mut self) {
+    pub fn forget_sights(&mut self) {
         self.sights.clear();
         self.looks = false;
     }

@@ -2,12 +2,11 @@
 
 use super::face::Face;
 use super::hits::BESIDE;
-use super::proven;
 use super::surface::Surface;
 use crate::geometry::sight::Line;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
-use std::any::Any;
+use std::cmp::Ordering;
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
@@ -23,24 +22,12 @@ impl Surface {
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
     ) -> (HitEnclosure<F>, usize) {
-        let find = || self.found_along::<A, F>(line, leaves);
-        let known = leaves.is_none().then(|| (line as &dyn Any).downcast_ref::<Line<Interval>>()).flatten();
-        let Some(known) = known else { return find() };
-        // The caller of a proof usually asks for the face next.
-        let found = proven::found(self.id, known, || {
-            let found = find();
-            (&found as &dyn Any).downcast_ref::<(HitEnclosure<f64>, usize)>().copied()
-        });
-        let found =
-            found.as_ref().and_then(|found| (found as &dyn Any).downcast_ref::<(HitEnclosure<F>, usize)>());
-        found.copied().unwrap_or_else(find)
-    }
-
-    fn found_along<A: Bounded, F: Precise>(
-        &self,
-        line: &Line<Interval<F>>,
-        leaves: Option<usize>,
-    ) -> (HitEnclosure<F>, usize) {
+        if F::IS_LONG
+            && leaves.is_none()
+            && let Some(found) = self.first_exactly::<A, F>(line)
+        {
+            return found;
+        }
         let met = self.met::<A, F>(line, |face| leaves == Some(face), true);
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
         let Some(((low, first), face)) = first else { return (HitEnclosure::Misses, 0) };
@@ -65,6 +52,35 @@ impl Surface {
             }
         }
         (HitEnclosure::Doubtful(low), face)
+    }
+
+    /// Returns what is proven about each of a line's hits with t > 0, and the hit faces, in order, up to the first that
+    /// is open.
+    pub(super) fn all_along<A: Bounded, F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> Vec<(HitEnclosure<F>, usize)> {
+        if F::IS_LONG
+            && leaves.is_none()
+            && let Some(found) = self.all_exactly::<A, F>(line)
+        {
+            return found;
+        }
+        let mut met = self.met::<A, F>(line, |face| leaves == Some(face), false);
+        met.sort_by(|((one, _), _), ((other, _), _)| one.partial_cmp(other).unwrap_or(Ordering::Equal));
+        let (mut all, mut left) = (Vec::new(), &met[..]);
+        while let Some(((low, found), face)) = left.first() {
+            match (found, together(left)) {
+                (HitEnclosure::Hits(_), 1) => all.push((*found, *face)),
+                _ => {
+                    all.push((HitEnclosure::Doubtful(*low), *face));
+                    break;
+                }
+            }
+            left = &left[1..];
+        }
+        all
     }
 
     /// Returns the faces that a line may hit, each with the enclosure of its first hit and the minimum t of that hit.
@@ -96,7 +112,7 @@ impl Surface {
 
     /// Tells whether other faces hide a face beside the point where a line hits it, like
     /// [`is_hidden`](Self::is_hidden), or `None` if that is undecided.
-    fn is_certainly_hidden<A: Bounded, F: Precise>(
+    pub(super) fn is_certainly_hidden<A: Bounded, F: Precise>(
         &self,
         face: usize,
         line: &Line<Interval<F>>,
@@ -149,4 +165,19 @@ impl Surface {
         let slope = dot(self.triangle::<A>(face).area_normal(), line.dir);
         if slope.has_zero() { None } else { Some(slope.high < F::of(0.0)) }
     }
+}
+
+/// Returns how many of the first hits, in order, may share a place, directly or through others between them.
+pub(super) fn together<F: Precise>(met: &[Met<F>]) -> usize {
+    let high = |((_, found), _): &Met<F>| match found {
+        HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => at.high,
+        _ => F::INFINITY,
+    };
+    let (mut count, mut end) = (1, high(&met[0]));
+    while count < met.len() && met[count].0.0 <= end {
+        let high = high(&met[count]);
+        end = if high > end { high } else { end };
+        count += 1;
+    }
+    count
 }

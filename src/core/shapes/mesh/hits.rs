@@ -214,26 +214,27 @@ impl Surface {
         matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
     }
 
-    /// Returns the enclosure of a ray's first hit.
-    pub(super) fn certify<A: Bounded>(&self, sight: &Sight, precision: Precision) -> Enclosure {
+    /// Returns the enclosure of a ray's first hit, and the hit face.
+    pub(super) fn certify<A: Bounded>(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         let line = sight.line::<Interval>();
         let Aabb { low, high } = self.bounds;
         let reach = line.origin.iter().fold(0.0, |reach, at| larger(reach, at.magnitude()));
         let fine = (reach > FAR * (high - low).max_element()).then(|| sight.line::<Wide>());
         if let Some(fine) = &fine {
-            let Some((entry, _)) = fine.clip(low, high) else { return Enclosure::Misses };
+            let Some((entry, _)) = fine.clip(low, high) else { return (Enclosure::Misses, 0) };
             let at = fine.at(Wide::point(entry));
             // The mesh is smaller than the error of the line there.
             if (0..3).all(|axis| at[axis].width() > f256::from(high[axis] - low[axis])) {
-                return Enclosure::Doubtful(entry);
+                return (Enclosure::Doubtful(entry), 0);
             }
-        }
-        if precision == Precision::Double && fine.is_none() {
-            match self.first_along::<A, f64>(&line, None).0 {
-                HitEnclosure::Hits(at) => return Enclosure::Hits(at.into()),
-                HitEnclosure::Misses => return Enclosure::Misses,
-                _ => {}
+        } else if precision == Precision::Double {
+            match self.first_along::<A, f64>(&line, None) {
+                // Integers decide a ray that 53 bits leave open.
+                (HitEnclosure::Edge(_) | HitEnclosure::Doubtful(_), _) if !line.is_exact() => {}
+                (found, face) => return (found.into(), face),
             }
+        } else if let Some((found, face)) = self.first_exactly::<A, Fraction>(&sight.line()) {
+            return (found.into(), face);
         }
         let entry = |Aabb { low, high }: &Aabb| match &fine {
             Some(fine) => fine.clip(*low, *high).map(|(entry, _)| entry),
@@ -261,29 +262,27 @@ impl Surface {
                     Enclosure::Edge(at) => at.low,
                     Enclosure::Doubtful(low) => low,
                 };
-                met.push((low, enclosure));
+                met.push((low, enclosure, face));
             },
         );
         let end = end.get();
-        met.retain(|(low, _)| *low <= end);
+        met.retain(|(low, ..)| *low <= end);
         let first = met.iter().copied().reduce(|one, other| if other.0 < one.0 { other } else { one });
-        match first {
-            None => Enclosure::Misses,
+        let Some((low, first, face)) = first else { return (Enclosure::Misses, 0) };
+        let first = match first {
             // The face certainly has a hit there, or a certain hit overlaps this one. Then the first hit lies in the
             // union of both intervals.
-            Some((low, Enclosure::Edge(at) | Enclosure::Hits(at))) if end <= at.high => {
+            Enclosure::Edge(at) | Enclosure::Hits(at) if end <= at.high => {
                 Enclosure::Hits(Wide { low, high: end })
             }
-            // Fractions decide whether a ray goes exactly through an edge, which belongs to the mesh.
-            Some((_, open @ Enclosure::Edge(_))) if precision == Precision::Octuple => {
-                match self.first_along::<A, Fraction>(&sight.line(), None).0 {
-                    HitEnclosure::Hits(at) => Enclosure::Hits(at.wide()),
-                    HitEnclosure::Misses => Enclosure::Misses,
-                    _ => open,
-                }
+            Enclosure::Edge(_) if precision == Precision::Octuple => {
+                return self
+                    .first_exactly::<A, Fraction>(&sight.line())
+                    .map_or((first, face), |(found, face)| (found.into(), face));
             }
-            Some((_, first)) => first,
-        }
+            first => first,
+        };
+        (first, face)
     }
 
     /// Returns the exact triangle of a face.

@@ -172,17 +172,6 @@ impl<A: Bounded> Hittable for Mesh<A> {
         Some(self.surface.order[face])
     }
 
-    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3) -> SurfaceHit {
-        let surface = &self.surface;
-        let known = Memo::with(|memo| memo.face(surface.id, ray, distance));
-        let face = known.unwrap_or_else(|| surface.face_along(ray, distance));
-        SurfaceHit {
-            normal: surface.triangle::<A>(face).plane.normal,
-            uv: Some(surface.uv_of(face, at)),
-            face: Some(surface.order[face]),
-        }
-    }
-
     fn assumes(&self, each: &mut dyn FnMut(Assumption)) {
         if self.surface.are_rounded {
             each(Assumption::Vertices);
@@ -224,7 +213,22 @@ impl<A: Bounded> HitQueries for Mesh<A> {
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.certify_part(sight, precision).0
+    }
+
+    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         self.surface.certify::<A>(sight, precision)
+    }
+
+    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {
+        let surface = &self.surface;
+        let known = part.or_else(|| Memo::with(|memo| memo.face(surface.id, ray, distance)));
+        let face = known.unwrap_or_else(|| surface.face_along(ray, distance));
+        Some(SurfaceHit {
+            normal: surface.triangle::<A>(face).plane.normal,
+            uv: Some(surface.uv_of(face, at)),
+            face: Some(surface.order[face]),
+        })
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
@@ -235,6 +239,14 @@ impl<A: Bounded> HitQueries for Mesh<A> {
 impl<A: Bounded, F: Precise> HitProofs<F> for Mesh<A> {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         self.surface.first_along::<A, F>(line, leaves)
+    }
+
+    fn all_hits(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
+        Some(self.surface.all_along::<A, F>(line, leaves))
     }
 
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {

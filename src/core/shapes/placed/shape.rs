@@ -9,7 +9,7 @@ use crate::geometry::sight::Sight;
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
-use crate::world::hittable::{Curvature, Facts, Hittable};
+use crate::world::hittable::{Curvature, Facts, Hittable, SurfaceHit};
 use crate::world::packets::shape::HitQueries;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -296,8 +296,18 @@ impl HitQueries for Placed {
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        let found = self.body.shape.certify(&sight.within(self.placement), precision);
-        self.max_z.kept_enclosure(sight, found)
+        self.certify_part(sight, precision).0
+    }
+
+    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+        let (found, part) = self.body.shape.certify_part(&sight.within(self.placement), precision);
+        (self.max_z.kept_enclosure(sight, found), part)
+    }
+
+    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {
+        let (own, length) = self.object_ray(ray);
+        let hit = self.body.shape.surface_hit(&own, distance * length, self.object_point(at), part);
+        Some(SurfaceHit { normal: (self.to_object_space.transpose() * hit.normal).normalize(), ..hit })
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {

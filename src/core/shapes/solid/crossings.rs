@@ -24,7 +24,7 @@ pub struct Crossings<'l, F> {
     line: &'l Line<Interval<F>>,
     /// The hits from the line's start, where the shape knows them at once. Searching each from the one before would
     /// accumulate errors of position.
-    listed: Option<vec::IntoIter<HitEnclosure<F>>>,
+    listed: Option<vec::IntoIter<(HitEnclosure<F>, usize)>>,
     start: Line<Interval<F>>,
     gone: Interval<F>,
     leaves: Option<usize>,
@@ -60,7 +60,7 @@ impl<'l, F: Precise> Crossings<'l, F> {
 
     fn next(&mut self) -> Result<Crossing<F>, F> {
         let (found, part) = match &mut self.listed {
-            Some(listed) => (listed.next().unwrap_or(HitEnclosure::Misses), 0),
+            Some(listed) => listed.next().unwrap_or((HitEnclosure::Misses, 0)),
             None => F::proofs(self.shape).first_hit(&self.start, self.leaves),
         };
         let at = match found {

@@ -31,25 +31,32 @@ impl SolidPart {
         crossings.get_or_insert_with(|| Crossings::new(shape, line, None)).around(place)
     }
 
-    /// Returns the first visible hit, and its part.
-    ///
-    /// # Errors
-    /// Returns the t beyond which nothing is known, or infinity if there is no hit.
-    fn proven_hit<F: Precise>(
+    /// Calls a function with the visible hits and their parts, in order, until it returns true. Returns the t beyond
+    /// which nothing is known, or infinity if there are no more hits.
+    fn proven_hits<F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
-    ) -> Result<(Interval<F>, usize), F> {
-        let zero = F::of(0.0);
-        let mut own = Crossings::new(self.proven(self.index).ok_or(zero)?, line, leaves);
+        mut met: impl FnMut(Interval<F>, usize) -> bool,
+    ) -> F {
+        if let Some(around) = self.around()
+            && line.clip(around.low, around.high).is_none()
+        {
+            return F::INFINITY;
+        }
+        let Some(proven) = self.proven(self.index) else { return F::of(0.0) };
+        let mut own = Crossings::new(proven, line, leaves);
         let mut others: Vec<Option<Crossings<'_, F>>> = Vec::new();
         others.resize_with(self.parts.len(), || None);
         for index in 0.. {
-            let crossing = own.get(index)?;
+            let crossing = match own.get(index) {
+                Ok(crossing) => crossing,
+                Err(end) => return end,
+            };
             if let Ok(next) = own.get(index + 1)
                 && next.at.low <= crossing.at.high
             {
-                return Err(crossing.at.low);
+                return crossing.at.low;
             }
             let mut around = [!crossing.enters, crossing.enters].map(|inside| {
                 let mut of = vec![false; self.parts.len()];
@@ -70,32 +77,50 @@ impl SolidPart {
                 None
             });
             if !is_known {
-                return Err(crossing.at.low);
+                return crossing.at.low;
             }
-            if self.tree.owner(&around[0], &around[1]) == Some(self.index) {
-                return Ok((crossing.at, crossing.part));
+            if self.tree.owner(&around[0], &around[1]) == Some(self.index) && met(crossing.at, crossing.part)
+            {
+                break;
             }
         }
-        Err(F::INFINITY)
+        F::INFINITY
     }
+}
+
+/// Returns what is known from a t on; `None` if that is infinite.
+fn open_from<F: Precise>(end: F) -> Option<HitEnclosure<F>> {
+    let zero = F::of(0.0);
+    (end != F::INFINITY).then(|| HitEnclosure::Doubtful(if end < zero { zero } else { end }))
 }
 
 impl<F: Precise> HitProofs<F> for SolidPart {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
-        if let Some(around) = self.around()
-            && line.clip(around.low, around.high).is_none()
-        {
-            return (HitEnclosure::Misses, 0);
-        }
-        match self.proven_hit(line, leaves) {
-            Ok((at, part)) => (HitEnclosure::Hits(at), part),
-            Err(end) if end == F::INFINITY => (HitEnclosure::Misses, 0),
-            Err(end) => (HitEnclosure::Doubtful(if end < F::of(0.0) { F::of(0.0) } else { end }), 0),
-        }
+        let mut first = None;
+        let end = self.proven_hits(line, leaves, |at, part| {
+            first = Some((HitEnclosure::Hits(at), part));
+            true
+        });
+        first.unwrap_or_else(|| (open_from(end).unwrap_or(HitEnclosure::Misses), 0))
+    }
+
+    fn all_hits(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
+        let mut all = Vec::new();
+        let end = self.proven_hits(line, leaves, |at, part| {
+            all.push((HitEnclosure::Hits(at), part));
+            false
+        });
+        all.extend(open_from(end).map(|open| (open, 0)));
+        Some(all)
     }
 
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {
         match self.proven(self.index) {
+            Some(proven) if self.is_outer => -F::proofs(proven).slope(at, part),
             Some(proven) => F::proofs(proven).slope(at, part),
             None => Dual::fixed(Interval::whole()),
         }
@@ -146,6 +171,7 @@ impl OverFootprint for SolidPart {
 
     fn slope(&self, at: [Dual<Affine>; 3], part: usize) -> Dual<Affine> {
         match self.proven(self.index) {
+            Some(proven) if self.is_outer => -OverFootprint::slope(proven, at, part),
             Some(proven) => OverFootprint::slope(proven, at, part),
             None => Dual::fixed(Affine::WHOLE),
         }

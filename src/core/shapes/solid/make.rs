@@ -189,8 +189,13 @@ fn seen(solid: &Solid) -> Vec<Body> {
         let tree = solid.tree.without(&|other| other != index && !meets(other));
         let (path, is_outer) = tree.path_to(index)?;
         let around = common(around, tree.bounds(&|part| bounds[part]));
-        let shape =
-            SolidPart::new(&parts, &bounds, (index, is_outer), (tree, solid.tree.clone(), path), around);
+        let shape = SolidPart::new(
+            &parts,
+            &bounds,
+            (index, is_outer, solid.is_open),
+            (tree, solid.tree.clone(), path),
+            around,
+        );
         let part = &parts[index];
         Some(Body {
             material: Some(part.material.clone()),

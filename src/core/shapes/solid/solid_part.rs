@@ -7,7 +7,7 @@ use crate::world::any_shape::AnyShape;
 use crate::world::body::Part;
 use crate::world::certify::{Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
-use crate::world::hittable::{Curvature, Facts, Hittable};
+use crate::world::hittable::{Curvature, Facts, Hittable, SurfaceHit};
 use crate::world::packets::shape::{HitQueries, by_distance};
 use crate::world::solid::Tree;
 use f256::f256;
@@ -51,6 +51,8 @@ pub struct SolidPart {
     /// The path to the part through the tree.
     path: Vec<usize>,
     facts: Facts,
+    /// Whether the solid is a surface that a clip cuts open.
+    is_open: bool,
     /// Whether the part is a clipped surface that is invisible outside of all other parts.
     is_within_others: bool,
 }
@@ -60,7 +62,7 @@ impl SolidPart {
     pub(super) fn new(
         parts: &Arc<[Part]>,
         around: &Arc<[Option<Aabb>]>,
-        (index, is_outer): (usize, bool),
+        (index, is_outer, is_open): (usize, bool, bool),
         (tree, whole, path): (Tree, Tree, Vec<usize>),
         bounds: Option<Aabb>,
     ) -> Self {
@@ -74,7 +76,7 @@ impl SolidPart {
             let inside: Vec<bool> = (0..parts.len()).map(|part| part == index).collect();
             tree.owner(&outside, &inside) != Some(index)
         };
-        Self { parts, around, index, is_outer, tree, whole, path, facts, is_within_others }
+        Self { parts, around, index, is_outer, tree, whole, path, facts, is_open, is_within_others }
     }
 
     /// Tells whether the search of single rays is limited to where they are in other parts.
@@ -413,15 +415,34 @@ impl HitQueries for SolidPart {
         true
     }
 
+    fn is_of_closed_solid(&self) -> bool {
+        !self.is_open
+    }
+
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         self.own().packets().fine_distance(ray, distance)
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.certify_part(sight, precision).0
+    }
+
+    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         match precision {
-            Precision::Double => HitProofs::<f64>::first_hit(self, &sight.line(), None).0.into(),
-            Precision::Octuple => HitProofs::<f256>::first_hit(self, &sight.line(), None).0.into(),
+            Precision::Double => {
+                let (found, part) = HitProofs::<f64>::first_hit(self, &sight.line(), None);
+                (found.into(), part)
+            }
+            Precision::Octuple => {
+                let (found, part) = HitProofs::<f256>::first_hit(self, &sight.line(), None);
+                (found.into(), part)
+            }
         }
+    }
+
+    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {
+        let hit = self.own().surface_hit(ray, distance, at, part);
+        Some(SurfaceHit { normal: if self.is_outer { -hit.normal } else { hit.normal }, ..hit })
     }
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {

@@ -23,8 +23,12 @@ pub trait HitProofs<F: Float> {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize);
 
     /// Returns what is proven about each of a line's hits with t > 0, in order, up to the first that is open; `None`
-    /// where each hit can only be found from the one before. Only shapes of one part return hits.
-    fn all_hits(&self, _line: &Line<Interval<F>>, _leaves: Option<usize>) -> Option<Vec<HitEnclosure<F>>> {
+    /// where each hit can only be found from the one before. Each has the part that is hit.
+    fn all_hits(
+        &self,
+        _line: &Line<Interval<F>>,
+        _leaves: Option<usize>,
+    ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
         None
     }
 
@@ -79,8 +83,13 @@ impl<E: Equation, F: Precise> HitProofs<F> for E {
         (F::along(self, line, leaves.is_some()), 0)
     }
 
-    fn all_hits(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> Option<Vec<HitEnclosure<F>>> {
-        F::all_along(self, line, leaves.is_some())
+    fn all_hits(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
+        let all = F::all_along(self, line, leaves.is_some())?;
+        Some(all.into_iter().map(|hit| (hit, 0)).collect())
     }
 
     fn slope(&self, at: [Dual<Interval<F>>; 3], _part: usize) -> Dual<Interval<F>> {

@@ -28,7 +28,7 @@ use crate::geometry::sight::{Line, Sight};
 use f256::f256;
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_exact::scalar::Scalar;
 
 /// What is proven about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
@@ -63,6 +63,17 @@ impl From<HitEnclosure<f256>> for Enclosure {
             HitEnclosure::Hits(at) => Self::Hits(at),
             HitEnclosure::Edge(at) => Self::Edge(at),
             HitEnclosure::Doubtful(from) => Self::Doubtful(from),
+        }
+    }
+}
+
+impl From<HitEnclosure<Fraction>> for Enclosure {
+    fn from(of: HitEnclosure<Fraction>) -> Self {
+        match of {
+            HitEnclosure::Misses => Self::Misses,
+            HitEnclosure::Hits(at) => Self::Hits(at.wide()),
+            HitEnclosure::Edge(at) => Self::Edge(at.wide()),
+            HitEnclosure::Doubtful(from) => Self::Doubtful(Interval::point(from).wide().low),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::world::certify::{self, Assumption, Enclosure, Equation, Precision, Premise, ProofMethods};
 use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{
-    ByEquation, ByFormula, ByRoots, Certified, Hittable, Searched, Shape, Unproven,
+    ByEquation, ByFormula, ByRoots, Certified, Hittable, Searched, Shape, SurfaceHit, Unproven,
 };
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
@@ -47,9 +47,31 @@ pub trait HitQueries: Send + Sync {
     /// Returns what is proven about a ray's first hit.
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
 
+    /// Returns what is proven about a ray's first hit, and the part of the shape that is hit.
+    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+        (self.certify(sight, precision), 0)
+    }
+
+    /// Returns the surface of the part that a proof names, where a ray hits it at a distance in world units; without a
+    /// part, of the one that the tracer finds. `None` for a shape whose points tell their surface.
+    fn surface_hit(
+        &self,
+        _ray: &Ray,
+        _distance: f64,
+        _at: DVec3,
+        _part: Option<usize>,
+    ) -> Option<SurfaceHit> {
+        None
+    }
+
     /// Returns the proofs about other rays than primary ones; `None` for a shape without an equation.
     fn proven(&self) -> Option<&dyn ProofMethods> {
         None
+    }
+
+    /// Tells whether the shape is a part of the surface of a closed solid.
+    fn is_of_closed_solid(&self) -> bool {
+        false
     }
 
     /// Tells whether hits are found by a formula of the notes, whose program tests every ray against every shape.

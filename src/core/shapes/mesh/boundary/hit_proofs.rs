@@ -6,7 +6,7 @@
 use super::Boundary;
 use crate::geometry::orientation::side_of_plane;
 use crate::geometry::sight::Line;
-use crate::shapes::mesh::along::Met;
+use crate::shapes::mesh::along::{Met, together};
 use crate::world::accuracy::{Bounded, Exact};
 use crate::world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
 use std::cmp::Ordering;
@@ -85,21 +85,6 @@ impl<A: Bounded> Boundary<A> {
         }
         (HitEnclosure::Misses, 0)
     }
-}
-
-/// Returns how many of the first hits, in order, may share a place, directly or through others between them.
-fn together<F: Precise>(met: &[Met<F>]) -> usize {
-    let high = |((_, found), _): &Met<F>| match found {
-        HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => at.high,
-        _ => F::INFINITY,
-    };
-    let (mut count, mut end) = (1, high(&met[0]));
-    while count < met.len() && met[count].0.0 <= end {
-        let high = high(&met[count]);
-        end = if high > end { high } else { end };
-        count += 1;
-    }
-    count
 }
 
 impl<A: Bounded, F: Precise> HitProofs<F> for Boundary<A> {

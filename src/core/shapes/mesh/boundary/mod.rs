@@ -17,7 +17,7 @@ use crate::world::accuracy::{Accuracy, Bounded, Exact, Strict};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Assumption, Enclosure, HitProofs, Precision, Premise, ProofMethods};
 use crate::world::coincidence::{CLOSE, ROUNDING, close};
-use crate::world::hittable::{Facts, Hittable};
+use crate::world::hittable::{Facts, Hittable, SurfaceHit};
 use crate::world::packets::shape::{HitQueries, ScalarIntersect, by_distance};
 use f256::f256;
 use glam::{DMat3, DVec2, DVec3};
@@ -220,10 +220,28 @@ impl<A: Bounded> HitQueries for Boundary<A> {
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.certify_part(sight, precision).0
+    }
+
+    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         match precision {
-            Precision::Double => HitProofs::<f64>::first_hit(self, &sight.line(), None).0.into(),
-            Precision::Octuple => HitProofs::<f256>::first_hit(self, &sight.line(), None).0.into(),
+            Precision::Double => {
+                let (found, part) = HitProofs::<f64>::first_hit(self, &sight.line(), None);
+                (found.into(), part)
+            }
+            Precision::Octuple => {
+                let (found, part) = HitProofs::<f256>::first_hit(self, &sight.line(), None);
+                (found.into(), part)
+            }
         }
+    }
+
+    fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {
+        let found = || self.turn_at(ray, distance).map_or_else(|| self.face_at(at), |turn| turn.face);
+        let face = part.map_or_else(found, |part| part >> 1);
+        let is_turned = part.map_or_else(|| self.sides(face, at)[0], |part| part & 1 == 1);
+        let hit = self.mesh.surface_hit(ray, distance, at, Some(face))?;
+        Some(SurfaceHit { normal: if is_turned { -hit.normal } else { hit.normal }, ..hit })
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
