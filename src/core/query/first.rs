@@ -61,20 +61,27 @@ pub fn first_of<'s>(
     sight: &Sight,
 ) -> (FirstHits, Precision) {
     let objects: Vec<_> = objects.into_iter().collect();
-    let certify = |(object, shape): &(usize, &AnyShape), precision| {
-        let (enclosure, part) = shape.certify_part(sight, precision);
-        Candidate { object: *object, part, enclosure }
-    };
-    let all: Vec<_> = objects.iter().map(|object| certify(object, Precision::Double)).collect();
-    match first(&all) {
+    match first_by(Precision::Double, objects.iter().copied(), sight) {
         FirstHits::OneOf { any, .. } => {
-            let is_open = |(index, _): &&(usize, &AnyShape)| any.iter().any(|open| open.object == *index);
-            let any: Vec<_> =
-                objects.iter().filter(is_open).map(|object| certify(object, Precision::Octuple)).collect();
-            (first(&any), Precision::Octuple)
+            let is_open = |(index, _): &(usize, &AnyShape)| any.iter().any(|open| open.object == *index);
+            let open = objects.into_iter().filter(is_open);
+            (first_by(Precision::Octuple, open, sight), Precision::Octuple)
         }
         certain => (certain, Precision::Double),
     }
+}
+
+/// Proves which of some objects a ray hits first, as far as one precision tells.
+pub fn first_by<'s>(
+    precision: Precision,
+    objects: impl IntoIterator<Item = (usize, &'s AnyShape)>,
+    sight: &Sight,
+) -> FirstHits {
+    let certify = |(object, shape): (usize, &'s AnyShape)| {
+        let (enclosure, part) = shape.certify_part(sight, precision);
+        Candidate { object, part, enclosure }
+    };
+    first(&objects.into_iter().map(certify).collect::<Vec<_>>())
 }
 
 /// Returns a distance up to which a ray certainly hits one of some objects; infinite where none is known.
