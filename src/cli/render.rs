@@ -15,7 +15,7 @@ use crate::rendering::bands::{PIXEL, TileRender};
 use crate::rendering::job::{Job, refuse_full_range};
 use crate::rendering::resume::ResumedImage;
 use crate::rendering::stats::{self, Stats};
-use crate::rendering::{aov, debug, flaws, part, resume};
+use crate::rendering::{aov, debug, flaws, part, resume, trial};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
@@ -260,6 +260,7 @@ fn render_image(
         registry,
         args,
         stop,
+        scene,
         path: &path,
         format,
         full_range,
@@ -287,6 +288,7 @@ struct ImageRender<'a> {
     registry: &'a Registry,
     args: &'a Args,
     stop: &'a Stop,
+    scene: &'a Path,
     path: &'a Path,
     /// The format of an image of bytes, and of the images beside it.
     format: Format,
@@ -346,6 +348,7 @@ impl ImageRender<'_> {
             Some(format) => job.full_range(output, format)?,
             None => render_bytes(&job, (output, format, begun), &self.differences, start)?,
         }
+        trial::warn_of_mistakes((&plan, &region), &renderer, &self.made, self.scene, start.elapsed());
         stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
         args.stats.print(&stats, &model);
         let Some(source) = source else { return Ok(()) };
@@ -389,6 +392,7 @@ impl ImageRender<'_> {
         let exact = || read_exact(&self.source, self.registry, model, args.stop.memory_left());
         let has_errors = beside.contains(&Aov::Error);
         part.run(args.stop.resume, |work| aov::with_truth(&plan, has_errors, exact, |truth| work(truth)))?;
+        trial::warn_of_mistakes((&plan, region), &renderer, &self.made, self.scene, start.elapsed());
         stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
         args.stats.print(&stats, model);
         Ok(())

@@ -53,6 +53,7 @@ static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
         ("barrel", BARREL.to_owned()),
         ("stripes", STRIPES.to_owned()),
         ("pill", PILL.to_owned()),
+        ("dented", DENTED.to_owned()),
         ("empty", String::new()),
     ];
     let mut files = Files::new();
@@ -298,6 +299,28 @@ fn pixels_that_a_shape_without_an_equation_may_cover_are_not_certified() {
     assert!(said.contains(&counted), "{said}");
 }
 
+// A shape with a fault
+
+#[test]
+fn a_fault_in_a_tenth_of_the_pixels_is_noticed_by_render() {
+    let scene = "orthographic eye { pixeldim 400 300  position 0 0 5  target 0 0 0  width 2.26 }
+        material m { ambient 0.5 0.5 0.5 } dented d { material m }";
+    let scene = BUILT.scene("dented", scene);
+    let paths = [scene.clone(), scene.with_extension("png")];
+    let paths = paths.each_ref().map(|path| path.to_str().expect("a path in UTF-8"));
+    let noticed = |options: &[&str]| {
+        let args = [&["render", paths[0], "-o", paths[1]][..], options].concat();
+        let said = BUILT.says(&args, "");
+        let warning = said.lines().find(|line| line.contains("finds another object than the first"));
+        warning.unwrap_or_else(|| panic!("{said}")).to_owned()
+    };
+    let once = noticed(&[]);
+    assert!(once.ends_with(" of 64 pixels that were tried"), "{once}");
+    for options in [["--threads", "1"], ["--part", "2/3"]] {
+        assert_eq!(noticed(&options), once);
+    }
+}
+
 // What `tabray new plugin` writes
 
 #[test]
@@ -467,6 +490,53 @@ impl Hittable for Pill {
     fn facts(&self) -> Facts {
         let out = DVec3::splat(self.radius);
         Facts::within(Aabb { low: self.from.min(self.to) - out, high: self.from.max(self.to) + out })
+    }
+}
+";
+
+/// A shape whose hits are not always those of its equation.
+const DENTED: &str = "//! A ball, in whose middle the tracer sees a hole.
+
+use tabray::exact::roots::Method;
+use tabray::prelude::*;
+use tabray::world::hittable::Searched;
+
+inventory::submit! {
+    Entity::shape(\"dented\", \"a ball with a fault\", &[], |_| Ok(Body::plain(Shape::new(Dented).searched())))
+}
+
+struct Dented;
+
+impl Hittable for Dented {
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let middle = ray.origin.dot(ray.dir);
+        let distance = -middle - (middle * middle - ray.origin.length_squared() + 1.0).sqrt();
+        let is_seen = ray.at(distance).truncate().length() > 0.35;
+        if is_seen { range.keep(distance) } else { MISS }
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        at.normalize()
+    }
+
+    fn facts(&self) -> Facts {
+        Facts::within(Aabb { low: -DVec3::ONE, high: DVec3::ONE })
+    }
+}
+
+impl Equation for Dented {
+    const IS_QUADRATIC: bool = true;
+
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        dot(at, at) - N::constant(1.0)
+    }
+}
+
+impl Certified for Dented {}
+
+impl Searched for Dented {
+    fn distance_by(&self, _method: Method, ray: &Ray, range: &RayRange) -> f64 {
+        self.distance(ray, range)
     }
 }
 ";

@@ -9,3 +9,4 @@ pub mod part;
 pub mod part_files;
 pub mod resume;
 pub mod stats;
+pub mod trial;

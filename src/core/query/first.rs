@@ -39,17 +39,24 @@ pub fn first_of<'s>(
     sight: &Sight,
 ) -> (FirstHits, Precision) {
     let objects: Vec<_> = objects.into_iter().collect();
-    let certify = |(index, shape): &(usize, &AnyShape), precision| (*index, shape.certify(sight, precision));
-    let all: Vec<_> = objects.iter().map(|object| certify(object, Precision::Double)).collect();
-    match first(&all) {
+    match first_by(Precision::Double, objects.iter().copied(), sight) {
         FirstHits::OneOf { any, .. } => {
-            let is_open = |(index, _): &&(usize, &AnyShape)| any.iter().any(|(open, _)| open == index);
-            let any: Vec<_> =
-                objects.iter().filter(is_open).map(|object| certify(object, Precision::Octuple)).collect();
-            (first(&any), Precision::Octuple)
+            let is_open = |(index, _): &(usize, &AnyShape)| any.iter().any(|(open, _)| open == index);
+            let open = objects.into_iter().filter(is_open);
+            (first_by(Precision::Octuple, open, sight), Precision::Octuple)
         }
         certain => (certain, Precision::Double),
     }
+}
+
+/// Proves which of some objects a ray hits first, as far as one precision tells.
+pub fn first_by<'s>(
+    precision: Precision,
+    objects: impl IntoIterator<Item = (usize, &'s AnyShape)>,
+    sight: &Sight,
+) -> FirstHits {
+    let certified = objects.into_iter().map(|(index, shape)| (index, shape.certify(sight, precision)));
+    first(&certified.collect::<Vec<_>>())
 }
 
 /// Returns a distance up to which a ray certainly hits one of some objects; infinite where none is known.

@@ -25,4 +25,4 @@ mod scene;
 pub use answer::{Answer, Surroundings, Verdict};
 pub use crossings::Crossing;
 pub use ray::ExactRay;
-pub use scene::Query;
+pub use scene::{Query, is_contradicted};

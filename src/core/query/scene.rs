@@ -1,10 +1,10 @@
 //! Queries about the hits of rays in a scene.
 
 use super::answer::{Answer, Surroundings, Verdict};
-use super::first::{FirstHits, first_of, last_end};
+use super::first::{FirstHits, first_by, first_of, last_end};
 use super::ray::ExactRay;
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::sight::Line;
+use crate::geometry::sight::{Line, Sight};
 use crate::render::observer::Hit;
 use crate::render::plan::Plan;
 use crate::render::trace;
@@ -60,13 +60,7 @@ impl<'m> Query<'m> {
     /// Returns the objects that a ray may meet at or before a distance in lengths of the sight's direction, in the
     /// order of the scene; all of them where there are few.
     pub(super) fn near(&self, ray: &ExactRay, end: f256) -> Vec<usize> {
-        let plan = &self.plan;
-        let Some(tree) = &plan.tree else { return (0..plan.model.objects.len()).collect() };
-        let line = ray.sight().line::<Interval>();
-        let mut near = plan.unbounded.clone();
-        tree.within(|bounds| enters(&line, bounds).is_some_and(|from| from <= end), |index| near.push(index));
-        near.sort_unstable();
-        near
+        near(&self.plan, ray.sight(), end)
     }
 
     /// Returns the shape of an object.
@@ -162,6 +156,25 @@ impl Query<'_> {
         let SurfaceHit { normal, uv, face } = shape.surface_hit(&ray.sight().ray(), answer.distance, point);
         Some(Surroundings { point, normal, uv, face: proven.or(face) })
     }
+}
+
+/// Tells whether the first hit that the tracer finds through a plan is certainly not the first, by proofs of 53 bits.
+pub fn is_contradicted(plan: &Plan, sight: &Sight) -> bool {
+    let found = trace::first_hit(plan, sight).map(|hit| hit.index);
+    let shape = |index: usize| (index, &plan.model.objects[index].shape);
+    let end = last_end(found.map(shape), sight);
+    let objects = near(plan, sight, end).into_iter().map(shape);
+    !first_by(Precision::Double, objects, sight).may_be(found)
+}
+
+/// Returns the objects that a ray may meet at or before a distance, as [`Query::near`] does.
+fn near(plan: &Plan, sight: &Sight, end: f256) -> Vec<usize> {
+    let Some(tree) = &plan.tree else { return (0..plan.model.objects.len()).collect() };
+    let line = sight.line::<Interval>();
+    let mut near = plan.unbounded.clone();
+    tree.within(|bounds| enters(&line, bounds).is_some_and(|from| from <= end), |index| near.push(index));
+    near.sort_unstable();
+    near
 }
 
 /// Returns the face of a shape that a ray certainly hits first, if that is the hit of an answer.
