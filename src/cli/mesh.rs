@@ -1,16 +1,20 @@
 //! `tabray mesh`: writes an object of a scene as a closed mesh of triangles.
 
+use crate::files::input;
 use crate::files::output::{self, Output};
 use crate::options::named::{Value, by_name};
 use crate::options::{scene, threads};
 use crate::process::failure::Failure;
+use crate::process::interrupt::{self, InterruptAction};
+use crate::process::progress::Progress;
 use crate::process::{memory, messages};
 use glam::DVec3;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use tabray_core::text::{count, list, short, shortest, shown};
 use tabray_lang::registry::Registry;
-use tabray_tools::surface_mesh::{Body, Format, NoBody, NoMesh, mesh};
+use tabray_tools::surface_mesh::{Body, Event, Format, NoBody, NoMesh, mesh};
 
 /// How many places are listed.
 const LISTED: usize = 5;
@@ -23,7 +27,7 @@ const LISTED: usize = 5;
 /// nodes of an algebraic surface.
 ///
 /// The object must be closed: an implicit, a surface of revolution, a solid, or a copy of one. If its box cuts an
-/// implicit, the faces of the box close it.
+/// implicit, the faces of the box close it. The scene needs no camera.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -73,13 +77,23 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
         let message = format!("the name `{}` does not determine the format of the mesh", shown(output));
         Failure::usage(message).help("end it in .stl, .obj or .ply, or give `--format`")
     })?;
-    let model = args.scene.load(registry, None)?;
+    let model = input::print_warnings(args.scene.read()?.load_for_rays(registry, None))?.model;
     output::refuse_source_by(output, "the mesh", &args.scene.path, &model)?;
     let body = Body::of(&model, name).map_err(|fault| no_body(&args.scene.path, &shown(name), fault))?;
     let size = 2.0 * body.bounds.half_size().max_element();
     let error = args.error.unwrap_or_else(|| short(FRACTION * size).parse().unwrap_or(size));
     let memory = memory::left();
-    let made = args.threads.renderer()?.run(|| mesh(&body, error, memory));
+    let progress = OnceLock::new();
+    let tell = |event| match event {
+        Event::Expected { triangles, steps } => {
+            messages::note(&format!("about {} triangles are to be made", rounded(triangles)));
+            progress.get_or_init(|| Progress::new(steps));
+        }
+        Event::Done(steps) => progress.get().into_iter().for_each(|progress| progress.advance(steps)),
+    };
+    interrupt::catch(InterruptAction::Exit("no mesh is written"))?;
+    let made = args.threads.renderer()?.run(|| mesh(&body, error, memory, &tell));
+    progress.get().into_iter().for_each(Progress::end);
     let made = made.map_err(|fault| no_mesh(&shown(name), error, &fault))?;
     let mut out = BufWriter::new(Output::open(output)?);
     let written = format.write(&made, name, &mut out);
@@ -118,6 +132,12 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
         count(made.far.len(), "cell"),
         listed(&made.far)
     )))
+}
+
+/// Returns a number with two digits and zeros.
+fn rounded(number: usize) -> usize {
+    let unit = 10_usize.pow(number.max(1).ilog10().saturating_sub(1));
+    number.div_ceil(unit) * unit
 }
 
 /// Lists the first places.

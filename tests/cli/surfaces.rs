@@ -62,3 +62,16 @@ fn an_object_becomes_a_mesh_that_is_read_again() {
     }
     assert_eq!(names_in(folder.path()), ["a.obj", "a.ply", "a.ray", "a.stl"]);
 }
+
+#[test]
+fn a_mesh_needs_no_camera_and_tells_what_it_takes() {
+    let folder = folder();
+    let scene = "material m { } heart h { material m  center 0 0 0  size 1 }";
+    fs::write(folder.path().join("a.ray"), scene).expect("written");
+    let args = ["mesh", "a.ray", "h", "-o", "a.ply", "--error", "0.02", "--progress", "json"];
+    let (status, _, err) = outcome(tabray(&folder).args(args));
+    assert_eq!(status, 0, "{err}");
+    let lines: Vec<_> = err.lines().collect();
+    assert!(lines[0].starts_with("about ") && lines[0].ends_with(" triangles are to be made"), "{err}");
+    assert!(lines[1].starts_with("{\"progress\":{\"done\":"), "{err}");
+}

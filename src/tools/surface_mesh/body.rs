@@ -18,7 +18,7 @@ pub struct Body<'m> {
     /// A box around it.
     pub bounds: Aabb,
     /// Whether its surface has edges that gradients do not show: it is a solid, or is closed by the faces of its box.
-    has_edges: bool,
+    pub(super) has_edges: bool,
     /// Whether the faces of its box close it.
     pub is_capped: bool,
 }

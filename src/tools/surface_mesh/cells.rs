@@ -1,5 +1,6 @@
 //! The cells that a surface may cross: those of a cube that is repeatedly halved along each axis.
 
+use super::Done;
 use super::body::Body;
 use glam::DVec3;
 use tabray_core::parallel;
@@ -43,7 +44,7 @@ pub fn key([x, y, z]: Index) -> u64 {
 
 impl Cells {
     /// Makes one cell around a body.
-    pub fn around(body: &Body<'_>) -> Self {
+    pub fn enclosing(body: &Body<'_>) -> Self {
         let half = body.bounds.half_size().max_element();
         let middle = body.bounds.middle() + half * BESIDE;
         let size = 2.0 * ROOM * half;
@@ -84,8 +85,25 @@ impl Cells {
         self.low + self.side() * (point(cell) + 0.5)
     }
 
+    /// Returns the low and the high corner of a cell, given by its place in the list.
+    pub fn cube(&self, cell: usize) -> [DVec3; 2] {
+        let (middle, half) = (self.middle(self.list[cell]), self.side() / 2.0);
+        [middle - half, middle + half]
+    }
+
+    /// Returns the places in the list of a cell and of those around it.
+    pub fn around(&self, cell: usize) -> impl Iterator<Item = usize> {
+        let at = self.list[cell];
+        (0..27).filter_map(move |part| {
+            // A cell below the first one has a number that no cell has.
+            let by = [part % 3, part / 3 % 3, part / 9];
+            let other = [0, 1, 2].map(|axis| (at[axis] + by[axis]).wrapping_sub(1));
+            if other.contains(&u32::MAX) { None } else { self.find(other) }
+        })
+    }
+
     /// Returns the place of a cell in the list.
-    pub fn find(&self, cell: Index) -> Option<usize> {
+    fn find(&self, cell: Index) -> Option<usize> {
         self.list.binary_search_by_key(&key(cell), |known| key(*known)).ok()
     }
 
@@ -93,13 +111,14 @@ impl Cells {
     ///
     /// # Errors
     /// If these are more than `most`; the cells then stay as they are.
-    pub fn halve(&mut self, body: &Body<'_>, most: usize) -> Result<(), ()> {
+    pub fn halve(&mut self, body: &Body<'_>, most: usize, done: Done) -> Result<(), ()> {
         let half = self.side() / 4.0;
         let low = self.low;
         let halves = |cell: Index| (0..8).map(move |part| of_eight(cell.map(|index| 2 * index), part));
         let may_be_crossed =
             |cell: &Index| body.contains(low + 2.0 * half * (point(*cell) + 0.5), half).is_none();
         let mut list = parallel::map_ranges(self.list.len(), MANY, &|range| {
+            done(range.len());
             self.list[range].iter().flat_map(|cell| halves(*cell)).filter(may_be_crossed).collect()
         });
         if list.len() > most {

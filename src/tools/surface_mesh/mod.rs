@@ -6,7 +6,8 @@
 //! outside, and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell). In each of
 //! them, triangles separate the corners inside from those outside. Whatever the corners are, these triangles form
 //! closed two-manifolds. Their vertices are moved along the cells' edges onto the surface. Proofs about the result
-//! hold however it was made. Where they fail, cells are halved again, until they are smaller than the error.
+//! hold however it was made. Where they fail, cells are halved again, until they are smaller than the error, unless
+//! all that fails is how parts are joined at places that smaller cells would not untangle.
 
 mod body;
 mod cells;
@@ -23,7 +24,6 @@ pub use file::Format;
 
 use cells::Cells;
 use glam::DVec3;
-use proof::Proof;
 use triangles::Triangles;
 
 /// The least number of times that the cube is halved: a body is not missed between corners far apart.
@@ -31,6 +31,9 @@ const FEWEST: u32 = 4;
 
 /// The largest number of times: numbers of the files have 24 bits.
 const MOST: u32 = 16;
+
+/// The number of halvings after which the work is estimated, which takes no noticeable time.
+const PILOT: u32 = 5;
 
 /// The maximum number of cells that the surface may cross, and the approximate number of bytes that each takes with
 /// its triangles.
@@ -50,44 +53,108 @@ pub enum NoMesh {
     Open,
 }
 
+/// What is told while a mesh is made.
+#[derive(Clone, Copy, Debug)]
+pub enum Event {
+    /// Most of the work is about to begin. A mesh that takes little time is made without this.
+    Expected {
+        /// About how many triangles are to be made.
+        triangles: usize,
+        /// In about how many steps.
+        steps: usize,
+    },
+    /// So many steps are done.
+    Done(usize),
+}
+
+/// Counts steps as done.
+type Done<'a> = &'a (dyn Fn(usize) + Sync);
+
 /// Makes a mesh of a body. Each point of the mesh is at most `error` world units from the surface, and each point of
 /// the surface from the mesh, except at the places that the result lists. `memory` is about the most memory that it
 /// may take, in bytes, if that is limited.
 ///
 /// # Errors
 /// Returns why there is no mesh.
-pub fn mesh(body: &Body<'_>, error: f64, memory: Option<u64>) -> Result<SurfaceMesh, NoMesh> {
+pub fn mesh(
+    body: &Body<'_>,
+    error: f64,
+    memory: Option<u64>,
+    tell: &(dyn Fn(Event) + Sync),
+) -> Result<SurfaceMesh, NoMesh> {
     let most = memory.map_or(MOST_CELLS, |bytes| MOST_CELLS.min((bytes / CELL) as usize));
-    let mut cells = Cells::around(body);
+    let mut cells = Cells::enclosing(body);
     let last = cells.halvings_to(error);
     if last > MOST {
         return Err(NoMesh::TooFine);
     }
+    let last = last.max(FEWEST);
+    let done = |steps: usize| tell(Event::Done(steps));
     loop {
-        cells.halve(body, most).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
-        let is_last = cells.halvings() >= last.max(FEWEST);
-        if cells.halvings() < FEWEST {
+        cells.halve(body, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
+        let now = cells.halvings();
+        if now < FEWEST {
             continue;
         }
-        let triangles = Triangles::of(&cells, body);
+        if cells.list.is_empty() {
+            return Err(NoMesh::Empty);
+        }
+        let tangled = proof::tangled(&cells, body, &done);
+        let stays = |of: &Vec<usize>| proof::stays_tangled(&cells, of, body, last - now);
+        let may_end = now == last || tangled.as_ref().is_none_or(stays);
+        if !may_end && now != PILOT {
+            continue;
+        }
+        let triangles = Triangles::of(&cells, body, &done);
         if triangles.faces.is_empty() {
-            if is_last {
+            if now == last {
                 return Err(NoMesh::Empty);
             }
             continue;
         }
-        let Proof { far, tangled } = proof::of(&cells, &triangles, body, error, is_last);
-        let is_proven = far.is_empty() && tangled.as_ref().is_none_or(Vec::is_empty);
-        if !(is_proven || is_last) {
-            continue;
+        if may_end {
+            let far = proof::far(&cells, &triangles, body, (error, now == last), &done);
+            if now == last || far.is_empty() {
+                return finished(&cells, triangles, far, tangled);
+            }
         }
-        if !triangles.is_closed() {
-            return Err(NoMesh::Open);
+        if now == PILOT {
+            tell(expected(&cells, &triangles, body, error, last));
         }
-        let Triangles { vertices, faces, .. } = triangles;
-        let vertices = vertices.into_iter().map(|vertex| vertex.at).collect();
-        return Ok(SurfaceMesh { vertices, faces, cell: cells.side(), far, tangled });
     }
+}
+
+/// Estimates the work, from the errors with which these cells would do: halved once, they do with a quarter of the error
+/// where the surface is smooth, and with half of it at edges.
+fn expected(cells: &Cells, triangles: &Triangles, body: &Body<'_>, error: f64, last: u32) -> Event {
+    let (most, gain) = (last - cells.halvings(), if body.has_edges { 2.0 } else { 4.0f64 });
+    let suffices = |more: &u32| {
+        let error = error * gain.powi(*more as i32);
+        proof::far(cells, triangles, body, (error, false), &|_| ()).is_empty()
+    };
+    let more = (1..most).find(suffices).unwrap_or(most);
+    let (growth, count) = (4usize.pow(more), cells.list.len());
+    // Each size of cells is four times the work of the size before: a third is added for all of them. A cell is halved,
+    // and examined four times.
+    let steps = (growth - 1) * 4 / 3 * (count / 4 + 4 * count + triangles.vertices.len());
+    Event::Expected { triangles: growth * triangles.faces.len(), steps }
+}
+
+/// Returns a mesh whose proof is over, with the cells in which it fails.
+fn finished(
+    cells: &Cells,
+    triangles: Triangles,
+    far: Vec<usize>,
+    tangled: Option<Vec<usize>>,
+) -> Result<SurfaceMesh, NoMesh> {
+    if !triangles.is_closed() {
+        return Err(NoMesh::Open);
+    }
+    let places = |of: Vec<usize>| of.into_iter().map(|cell| cells.cube(cell)).collect();
+    let Triangles { vertices, faces, .. } = triangles;
+    let vertices = vertices.into_iter().map(|vertex| vertex.at).collect();
+    let (far, tangled) = (places(far), tangled.map(places));
+    Ok(SurfaceMesh { vertices, faces, cell: cells.side(), far, tangled })
 }
 
 impl SurfaceMesh {

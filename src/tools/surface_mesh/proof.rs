@@ -1,9 +1,11 @@
 //! Proofs about a mesh: that it is near a body's surface, and the surface near it.
 
+use super::Done;
 use super::body::Body;
 use super::cells::Cells;
 use super::triangles::Triangles;
 use glam::DVec3;
+use std::mem::replace;
 use tabray_core::parallel;
 
 /// The maximum number of times that a triangle or a cell is cut into four or eight.
@@ -15,75 +17,113 @@ const LEAST: f64 = 1.0 / 32.0;
 /// The minimum number of cells for which threads share the work.
 const MANY: usize = 16;
 
-/// The places where a proof fails.
-pub struct Proof {
-    pub far: Vec<[DVec3; 2]>,
-    pub tangled: Option<Vec<[DVec3; 2]>>,
-}
-
-/// Finds the places where the mesh and the surface may be farther from each other than the error, and those where the
-/// surface may turn by a right angle within a cell. Unless `all` is set, the search ends soon after the first place.
-pub fn of(cells: &Cells, triangles: &Triangles, body: &Body<'_>, error: f64, all: bool) -> Proof {
+/// Finds the cells in which the mesh and the surface may be farther from each other than the error. Unless `all` is
+/// set, the search ends soon after the first.
+pub fn far(
+    cells: &Cells,
+    triangles: &Triangles,
+    body: &Body<'_>,
+    (error, all): (f64, bool),
+    done: Done,
+) -> Vec<usize> {
     let half = cells.side() / 2.0;
-    let cube = |cell: usize| {
-        let middle = cells.middle(cells.list[cell]);
-        [middle - half, middle + half]
+    let is_off = |cell: &usize, is: &dyn Fn(usize) -> bool| {
+        let mut own = triangles.of_cells[*cell].clone();
+        own.any(|face| !is(face as usize))
     };
-    let is_far = |cell: usize| {
-        let own = triangles.of_cells[cell].clone();
-        let is_near = own.into_iter().all(|face| is_near(body, triangles, face as usize, error));
-        !is_near
-            || !is_covered(body, &near(cells, triangles, cell), cells.middle(cells.list[cell]), half, error)
+    let is_bare = |cell: &usize| {
+        let faces = cells.around(*cell).flat_map(|other| triangles.of_cells[other].clone());
+        let near: Vec<_> = faces.map(|face| triangles.corners(face as usize)).collect();
+        !is_covered(body, &near, cells.middle(cells.list[*cell]), half, error)
     };
-    let places = |is: &(dyn Fn(usize) -> bool + Sync)| {
-        if !all {
-            return parallel::find_first(cells.list.len(), is).map(cube).into_iter().collect();
-        }
-        parallel::map_ranges(cells.list.len(), MANY, &|range| {
-            range.filter(|cell| is(*cell)).map(cube).collect()
+    let places = |is: &(dyn Fn(&usize) -> bool + Sync)| -> Vec<usize> {
+        parallel::map_ranges(cells.list.len(), MANY, &|mut range| {
+            done(range.len());
+            if all { range.filter(is).collect() } else { range.find(is).into_iter().collect() }
         })
     };
-    let is_examined = body.is_graph(cells.middle(cells.list[0]), half).is_some();
-    let tangled: Option<Vec<_>> = is_examined
-        .then(|| places(&|cell| body.is_graph(cells.middle(cells.list[cell]), half) == Some(false)));
-    if !all && tangled.as_ref().is_some_and(|places| !places.is_empty()) {
-        return Proof { far: Vec::new(), tangled };
+    // Cells that are too large are found by their triangles, and most by the middles of these, in far less time.
+    let by_middles = |cell: &usize| is_off(cell, &|face| is_near_at_middle(body, triangles, face, error));
+    let by_triangles = |cell: &usize| is_off(cell, &|face| is_near(body, triangles, face, error));
+    let found = if all { Vec::new() } else { places(&by_middles) };
+    let off = if found.is_empty() { places(&by_triangles) } else { found };
+    if !all && !off.is_empty() {
+        return off;
     }
-    Proof { far: places(&is_far), tangled }
+    places(&|cell| off.binary_search(cell).is_ok() || is_bare(cell))
 }
 
-/// Returns the triangles of a cell and of those around it.
-fn near(cells: &Cells, triangles: &Triangles, cell: usize) -> Vec<[DVec3; 3]> {
-    let at = cells.list[cell];
-    let mut found = Vec::new();
-    for part in 0..27 {
-        // A cell below the first one has a number that no cell has.
-        let by = [part % 3, part / 3 % 3, part / 9];
-        let other = [0, 1, 2].map(|axis| (at[axis] + by[axis]).wrapping_sub(1));
-        if other.contains(&u32::MAX) {
-            continue;
-        }
-        if let Some(other) = cells.find(other) {
-            found.extend(triangles.of_cells[other].clone().map(|face| triangles.corners(face as usize)));
+/// Finds the cells in which the surface may turn by a right angle; `None` if gradients do not tell.
+pub fn tangled(cells: &Cells, body: &Body<'_>, done: Done) -> Option<Vec<usize>> {
+    let half = cells.side() / 2.0;
+    let is_graph = |cell: usize| body.is_graph(cells.middle(cells.list[cell]), half);
+    is_graph(0)?;
+    Some(parallel::map_ranges(cells.list.len(), MANY, &|range| {
+        done(range.len());
+        range.filter(|cell| is_graph(*cell) == Some(false)).collect()
+    }))
+}
+
+/// Tells whether smaller cells would be tangled in the same places: whether each of these cells, or one to which
+/// others of them lead, has a part that is tangled after it is halved so many times. A node stays tangled, and so do
+/// the cells around it, however small they are.
+pub fn stays_tangled(cells: &Cells, tangled: &[usize], body: &Body<'_>, halvings: u32) -> bool {
+    let half = cells.side() / 2.0;
+    let mut stays = parallel::filled(tangled.len(), MANY, |index| {
+        has_tangled_part(body, cells.middle(cells.list[tangled[index]]), half, halvings)
+    });
+    let mut found: Vec<_> = (0..stays.len()).filter(|index| stays[*index]).collect();
+    while let Some(index) = found.pop() {
+        for next in cells.around(tangled[index]).filter_map(|cell| tangled.binary_search(&cell).ok()) {
+            if !replace(&mut stays[next], true) {
+                found.push(next);
+            }
         }
     }
-    found
+    stays.into_iter().all(|stays| stays)
+}
+
+fn has_tangled_part(body: &Body<'_>, middle: DVec3, half: f64, halvings: u32) -> bool {
+    body.contains(middle, half).is_none()
+        && body.is_graph(middle, half) == Some(false)
+        && (halvings == 0
+            || eighths(middle, half).any(|middle| has_tangled_part(body, middle, half / 2.0, halvings - 1)))
+}
+
+/// Returns the middles of the eight cubes that are half as large as a cube.
+fn eighths(middle: DVec3, half: f64) -> impl Iterator<Item = DVec3> {
+    (0..8u32).map(move |part| {
+        let sign = |bit: u32| if part >> bit & 1 == 0 { -0.5 } else { 0.5 };
+        middle + half * DVec3::new(sign(0), sign(1), sign(2))
+    })
 }
 
 /// Tells whether each point of a triangle is certainly within the error of the surface.
 fn is_near(body: &Body<'_>, triangles: &Triangles, face: usize, error: f64) -> bool {
-    let corners = triangles.corners(face);
-    let [a, b, c] = corners;
+    outward(triangles, face, error)
+        .is_none_or(|outward| outward.is_finite() && is_between(body, triangles.corners(face), outward, 0))
+}
+
+/// Tells whether the middle of a triangle may be within the error of the surface.
+fn is_near_at_middle(body: &Body<'_>, triangles: &Triangles, face: usize, error: f64) -> bool {
+    outward(triangles, face, error).is_none_or(|outward| {
+        let middle = triangles.corners(face).into_iter().sum::<DVec3>() / 3.0;
+        let is = |at: DVec3, inside: bool| body.contains_point(at) == Some(inside);
+        is(middle + outward, false) && is(middle - outward, true)
+    })
+}
+
+/// Returns the vector of a triangle's normal, as long as the error; `None` if the triangle is so small that each of its
+/// points is certainly within the error of the surface.
+fn outward(triangles: &Triangles, face: usize, error: f64) -> Option<DVec3> {
+    let [a, b, c] = triangles.corners(face);
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let slack = triangles.faces[face].map(|vertex| triangles.vertices[vertex as usize].slack);
     let slack = slack.into_iter().fold(0.0, f64::max);
     // A point of a triangle is at most as far from the nearest corner as in a triangle with equal sides.
-    if longest / 3f64.sqrt() + slack <= error {
-        return true;
-    }
+    let is_small = longest / 3f64.sqrt() + slack <= error;
     let normal = (b - a).cross(c - a);
-    let normal = normal / normal.length();
-    normal.is_finite() && is_between(body, corners, normal * error, 0)
+    (!is_small).then(|| normal / normal.length() * error)
 }
 
 /// Tells whether each point of a triangle lies between a point inside and a point outside, this far from it.
@@ -122,11 +162,7 @@ fn is_covered(body: &Body<'_>, triangles: &[[DVec3; 3]], middle: DVec3, half: f6
         .filter(|triangle| distance_squared(middle, triangle) <= far * far)
         .copied()
         .collect();
-    (0..8u32).all(|part| {
-        let sign = |bit: u32| if part >> bit & 1 == 0 { -0.5 } else { 0.5 };
-        let middle = middle + half * DVec3::new(sign(0), sign(1), sign(2));
-        is_covered(body, &near, middle, half / 2.0, error)
-    })
+    eighths(middle, half).all(|middle| is_covered(body, &near, middle, half / 2.0, error))
 }
 
 /// Returns the square of the distance from a point to a triangle.

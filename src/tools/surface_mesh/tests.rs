@@ -2,6 +2,8 @@
 
 use super::*;
 use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use tabray_core::scene::Model;
 use tabray_lang::{Registry, read};
 
@@ -22,11 +24,17 @@ fn implicit(formula: &str, half: f64) -> String {
     )
 }
 
+const BALL: &str = "sphere a { material m  center 0 0 0  radius 1 }";
+
+const SOLID: &str = "box cube { material m  center 0 0 0  size 2 2 2 }
+    sphere ball { material m  center 1 1 1  radius 1 }
+    difference a { objects cube ball }";
+
 /// Makes the mesh of the object `a`, and counts its edges.
 fn meshed(objects: &str, error: f64) -> SurfaceMesh {
     let model = model(objects);
     let body = Body::of(&model, "a").expect("a closed object");
-    let made = mesh(&body, error, None).expect("a mesh");
+    let made = mesh(&body, error, None, &|_| ()).expect("a mesh");
     let mut edges = std::collections::BTreeMap::new();
     for [a, b, c] in &made.faces {
         for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -90,17 +98,14 @@ fn what_a_box_cuts_is_closed_by_its_faces() {
     let model = model(&implicit("z", 1.0));
     let body = Body::of(&model, "a").expect("a closed object");
     assert!(body.is_capped);
-    let half = mesh(&body, 0.2, None).expect("a mesh");
+    let half = mesh(&body, 0.2, None, &|_| ()).expect("a mesh");
     assert!(half.far.is_empty() && (half.volume() - 4.0).abs() < 3.0, "{}", half.volume());
     assert!(samples(&half).iter().all(|at| at.z < 0.2 && at.abs().max_element() < 1.2));
 }
 
 #[test]
 fn a_solid_with_edges_is_within_its_error() {
-    let solid = "box cube { material m  center 0 0 0  size 2 2 2 }
-                 sphere ball { material m  center 1 1 1  radius 1 }
-                 difference a { objects cube ball }";
-    let made = meshed(solid, 0.15);
+    let made = meshed(SOLID, 0.15);
     assert!(made.far.is_empty(), "{:?}", made.far);
     assert_eq!(characteristic(&made), 2);
     let volume = 8.0 - std::f64::consts::PI / 6.0;
@@ -120,12 +125,38 @@ fn nodes_are_named_where_parts_meet() {
 }
 
 #[test]
+fn a_node_refines_no_cell_elsewhere() {
+    // A heart has two points where no plane touches it.
+    let heart = meshed("heart a { material m  center 0 0 0  size 1 }", 0.05);
+    assert!(heart.far.is_empty() && heart.tangled.is_some_and(|places| !places.is_empty()));
+    assert!(heart.faces.len() < 10_000, "{}", heart.faces.len());
+}
+
+#[test]
+fn the_work_is_estimated_before_most_of_it() {
+    let model = model(BALL);
+    let body = Body::of(&model, "a").expect("a closed object");
+    let (expected, done) = (Mutex::new((0, 0)), AtomicUsize::new(0));
+    let made = mesh(&body, 0.002, None, &|event| match event {
+        Event::Expected { triangles, steps } => {
+            *expected.lock().expect("no panic") = (triangles, steps);
+            done.store(0, Ordering::Relaxed);
+        }
+        Event::Done(steps) => drop(done.fetch_add(steps, Ordering::Relaxed)),
+    });
+    let (triangles, steps) = expected.into_inner().expect("no panic");
+    let (made, done) = (made.expect("a mesh").faces.len(), done.into_inner());
+    assert!(triangles.abs_diff(made) < made / 10, "{triangles} of {made}");
+    assert!(steps.abs_diff(done) < done / 5, "{steps} of {done}");
+}
+
+#[test]
 fn threads_change_no_byte() {
     let model = model(&implicit("x^4 + y^4 + z^4 - 1", 1.2));
     let body = Body::of(&model, "a").expect("a closed object");
     let bytes = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let made = pool.install(|| mesh(&body, 0.05, None)).expect("a mesh");
+        let made = pool.install(|| mesh(&body, 0.05, None, &|_| ())).expect("a mesh");
         [Format::Stl, Format::Obj, Format::Ply].map(|format| {
             let mut bytes = Vec::new();
             format.write(&made, "a", &mut bytes).expect("memory");
@@ -147,9 +178,9 @@ fn what_encloses_nothing_is_refused() {
         NoBody::Open(_)
     ));
     assert!(matches!(refused(&implicit("1/x + y + z", 1.0)), NoBody::Open(_)));
-    let tiny = model("sphere a { material m  center 0 0 0  radius 1 }");
+    let tiny = model(BALL);
     let body = Body::of(&tiny, "a").expect("a sphere");
-    assert!(matches!(mesh(&body, 1e-9, None), Err(NoMesh::TooFine)));
+    assert!(matches!(mesh(&body, 1e-9, None, &|_| ()), Err(NoMesh::TooFine)));
 }
 
 #[test]
@@ -169,8 +200,10 @@ fn turned_copies_and_turned_pieces_are_closed() {
 
 #[test]
 fn a_mesh_keeps_to_its_memory() {
-    let model = model("sphere a { material m  center 0 0 0  radius 1 }");
+    let model = model(BALL);
     let body = Body::of(&model, "a").expect("a closed object");
-    let Err(NoMesh::TooMany(least)) = mesh(&body, 0.0001, Some(10_000_000)) else { panic!("it takes more") };
-    assert!(mesh(&body, least, Some(10_000_000)).is_ok(), "{least}");
+    let Err(NoMesh::TooMany(least)) = mesh(&body, 0.0001, Some(10_000_000), &|_| ()) else {
+        panic!("it takes more")
+    };
+    assert!(mesh(&body, least, Some(10_000_000), &|_| ()).is_ok(), "{least}");
 }

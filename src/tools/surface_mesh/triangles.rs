@@ -1,5 +1,6 @@
 //! The triangles between corners inside and corners outside.
 
+use super::Done;
 use super::body::Body;
 use super::cells::{Cells, Index, key, of_eight, point};
 use glam::DVec3;
@@ -9,8 +10,8 @@ use tabray_core::parallel;
 /// The axes along which the edges of the six tetrahedra run from the low corner of a cell to the high one.
 const WAYS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
-/// The number of times that the part of an edge that the surface crosses is halved.
-const HALVINGS: u32 = 30;
+/// The part of an edge that the surface crosses is halved until it is shorter than this, in steps of single precision.
+const FINEST: f64 = 0.25;
 
 /// The least distance of a vertex from an end of its edge, in edges, so every triangle has an area.
 const LEAST: f64 = 1.0 / 512.0;
@@ -53,7 +54,7 @@ fn ends(edge: Edge) -> [Index; 2] {
 
 impl Triangles {
     /// Makes the triangles in all cells, in the order of the cells.
-    pub fn of(cells: &Cells, body: &Body<'_>) -> Self {
+    pub fn of(cells: &Cells, body: &Body<'_>, done: Done) -> Self {
         let mut corners: Vec<(u64, Index)> = cells
             .list
             .iter()
@@ -81,6 +82,7 @@ impl Triangles {
                 let ends = ends(*edge);
                 crossing(body, ends.map(|end| (cells.corner(end), side(end))))
             };
+            done(range.len());
             edges[range].iter().map(vertex).collect()
         });
         let number = |edge: &Edge| edges.binary_search(edge).unwrap_or(0) as u32;
@@ -152,7 +154,9 @@ fn crossing(body: &Body<'_>, [one, other]: [(DVec3, Option<bool>); 2]) -> Vertex
     let at = |t: f64| inner.0 + t * (outer.0 - inner.0);
     let (mut low, mut high) = (0.0, 1.0);
     let mut middle = 0.5;
-    for _ in 0..HALVINGS {
+    let length = (outer.0 - inner.0).length();
+    let step = inner.0.abs().max(outer.0.abs()).max_element() * f64::from(f32::EPSILON);
+    while (high - low) * length > FINEST * step {
         middle = 0.5 * (low + high);
         match body.contains_point(at(middle)) {
             Some(true) => low = middle,
@@ -160,8 +164,6 @@ fn crossing(body: &Body<'_>, [one, other]: [(DVec3, Option<bool>); 2]) -> Vertex
             None => break,
         }
     }
-    let length = (outer.0 - inner.0).length();
-    let step = inner.0.abs().max(outer.0.abs()).max_element() * f64::from(f32::EPSILON);
     let least = LEAST.max(STEPS * step / length).min(0.5);
     let found = at(middle.clamp(least, 1.0 - least)).as_vec3().as_dvec3();
     // The surface lies between a point inside and a point outside.
