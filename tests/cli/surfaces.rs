@@ -68,7 +68,7 @@ fn a_mesh_needs_no_camera_and_tells_what_it_takes() {
     let folder = folder();
     let scene = "material m { } heart h { material m  center 0 0 0  size 1 }";
     fs::write(folder.path().join("a.ray"), scene).expect("written");
-    let args = ["mesh", "a.ray", "h", "-o", "a.ply", "--error", "0.002", "--progress", "json"];
+    let args = ["mesh", "a.ray", "h", "-o", "a.ply", "--error", "0.02", "--progress", "json"];
     let (status, _, err) = outcome(tabray(&folder).args(args));
     assert_eq!(status, 0, "{err}");
     let lines: Vec<_> = err.lines().collect();
