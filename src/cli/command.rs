@@ -1,7 +1,6 @@
 //! Commands: each registers itself in its own file, as entity types do.
 
 use crate::process::failure::{Failure, report};
-use crate::process::program;
 use clap::{ArgMatches, Args};
 use std::panic::Location;
 use std::process::ExitCode;

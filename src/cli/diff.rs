@@ -59,11 +59,11 @@ Examples:
   tabray diff old.png new.png
   tabray diff old.png new.png --tolerance 1 -o diff.html --scene ball.ray";
 
-/// Compares two images. The exit status distinguishes errors of any kind from a difference, as with `diff` and `cmp`.
 inventory::submit! {
     Command::new("diff", Group::Inside, &Run(run)).placed(2, 17)
 }
 
+/// Compares two images. The exit status distinguishes errors of any kind from a difference, as with `diff` and `cmp`.
 fn run(registry: &Registry, args: Args) -> ExitCode {
     match compare(registry, &args) {
         Ok(same) => ExitCode::from(u8::from(!same)),

@@ -65,11 +65,11 @@ const EXAMPLES: &str = concat!(
   tabray grade ball.ray handed-in.png --json"
 );
 
-/// Grades a picture. The exit status distinguishes errors of any kind from a difference, as with `diff`.
 inventory::submit! {
     Command::new("grade", Group::Inside, &Run(run)).placed(3, 18)
 }
 
+/// Grades a picture. The exit status distinguishes errors of any kind from a difference, as with `diff`.
 fn run(registry: &Registry, args: Args) -> ExitCode {
     match graded(registry, &args) {
         Ok(is_same) => ExitCode::from(u8::from(!is_same)),

@@ -58,7 +58,7 @@ pub fn stl(model: &Model, name: &str) -> Result<Vec<u8>, String> {
     })?;
     let size = 2.0 * body.bounds.half_size().max_element();
     let error = short(FRACTION * size).parse().unwrap_or(size);
-    let made = mesh(&body, error, None).map_err(|fault| match fault {
+    let made = mesh(&body, error, None, &|_| {}).map_err(|fault| match fault {
         NoMesh::Empty => format!("nothing of `{name}` is larger than {error}"),
         NoMesh::TooMany(_) => format!("a mesh of `{name}` within {error} has too many triangles"),
         NoMesh::TooFine => "the object is too small for the digits of STL".to_owned(),

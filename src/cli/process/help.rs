@@ -28,7 +28,6 @@ pub fn grouped(line: clap::Command) -> clap::Command {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::line;
     use clap::Command;
     use clap::error::ErrorKind;
