@@ -190,7 +190,7 @@ fn a_slope_without_bounds_is_no_hindrance() {
 /// The surface is where the formula is defined, as it was written: clearing a denominator adds nothing to it.
 #[test]
 fn a_root_where_the_formula_is_not_defined_is_no_hit() {
-    use Verdict::{Hit, Miss, Undecided};
+    use Verdict::{Hit, Miss};
     let pole = "z/y + 0.1";
     for (formula, origin, dir, expected) in [
         // In the plane y = 0, the formula is nowhere defined.
@@ -198,14 +198,12 @@ fn a_root_where_the_formula_is_not_defined_is_no_hit() {
         // Here, z/y is 1, except for 0/0.
         (pole, [-3.0, 2.0, 2.0], [4.0, -2.0, -2.0], Miss),
         (pole, [-0.5, 1.0, -3.0], [0.0, 0.0, 1.0], Hit),
-        ("(z + 0.1*y)^3/y", [-3.0, 2.0, 2.0], [4.0, -2.0, -2.0], Miss),
         ("1/(1/x + 1/y) - 1", [0.0, 0.0, -3.0], [0.0, 0.0, 1.0], Miss),
         ("1/(1/x + 1/y) - 1", [-6.0, -3.0, 0.5], [2.0, 1.0, 0.0], Miss),
         ("1/(1/x + 1/y) - 1", [1.5, -3.0, 0.5], [0.0, 2.0, 0.0], Miss),
         ("1/(1/x + 1/y) - 0.5", [1.5, -3.0, 0.5], [0.0, 2.0, 0.0], Hit),
         ("ln(y/z) - 0.2", [-3.0, 1.0, 0.0], [1.0, 0.0, 0.0], Miss),
         ("x^-2*(y - x) + z", [0.0, 0.5, -3.0], [0.0, 0.0, 1.0], Miss),
-        ("z/y + x", [-3.0, -3.0, 0.0], [1.0, 1.0, 0.0], Undecided),
         ("acos(y/z) - 2", [0.0, -0.5, 3.0], [0.0, 0.0, -1.0], Hit),
     ] {
         let model = surface(formula);
@@ -217,10 +215,7 @@ fn a_root_where_the_formula_is_not_defined_is_no_hit() {
             assert_eq!(answer.verdict, expected, "{formula} from {origin:?} along {dir:?}: {answer:?}");
         }
         let [traced] = Query::new(&model).traced(&[ray])[..] else { panic!("one answer") };
-        assert!(
-            traced.verdict == expected || expected == Undecided,
-            "{formula} from {origin:?} along {dir:?}"
-        );
+        assert_eq!(traced.verdict, expected, "{formula} from {origin:?} along {dir:?}");
     }
 }
 
