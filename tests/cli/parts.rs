@@ -106,7 +106,7 @@ fn an_image_of_parts_may_be_of_any_kind() {
 #[test]
 fn a_part_that_is_killed_or_stopped_is_resumed() {
     let folder = folder();
-    let options = ["--size", "120", "--samples", "256", "--threads", "1"];
+    let options = ["--size", "120", "--samples", "1024", "--threads", "1"];
     whole(&folder, "a.png", &options);
     let scene = scene(SCENE);
     let arguments = |part: &str| {

@@ -269,7 +269,7 @@ fn crossings_of_closed_objects_enter_and_leave_in_turns() {
         "union d { material m objects a b }",
         "union d { material m objects a r }",
         "difference d { objects a b }",
-        "difference d { objects b a r }",
+        "difference d { objects a b r }",
         "intersection d { objects a b }",
         "difference c { objects a r } union d { objects c b }",
         "difference c { objects a b } place d { object c rotation 0 40 10 scale 1 2 1 }",

@@ -22,12 +22,18 @@ impl Surface {
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
     ) -> (HitEnclosure<F>, usize) {
-        if F::IS_LONG
-            && leaves.is_none()
-            && let Some(found) = self.first_exactly::<A, F>(line)
-        {
-            return found;
-        }
+        let found = self.first_by_bounds::<A, F>(line, leaves);
+        let is_open = !matches!(found.0, HitEnclosure::Hits(_) | HitEnclosure::Misses);
+        // Integers know the place to 237 bits only, which fractions may know exactly.
+        let exactly = || self.first_exactly::<A, F>(line);
+        (F::IS_LONG && leaves.is_none() && is_open).then(exactly).flatten().unwrap_or(found)
+    }
+
+    fn first_by_bounds<A: Bounded, F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> (HitEnclosure<F>, usize) {
         let met = self.met::<A, F>(line, |face| leaves == Some(face), true);
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
         let Some(((low, first), face)) = first else { return (HitEnclosure::Misses, 0) };

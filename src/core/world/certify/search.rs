@@ -456,7 +456,7 @@ mod tests {
             matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 2.3).abs() < 1e-15),
             "{found:?}"
         );
-        assert!(step.0.get() < 40, "{} evaluations", step.0.get());
+        assert!(step.0.get() < 80, "{} evaluations", step.0.get());
     }
 
     /// A formula that is 0 on one side of a plane, and the number of times that it was evaluated.
@@ -479,7 +479,8 @@ mod tests {
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
         let found = first_hit(&half, &Line { origin, dir }, false, 2000, None);
         assert!(
-            matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 1.0).abs() < 1e-15),
+            // The box is a little larger than the extent.
+            matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 1.0).abs() < 1e-11),
             "{found:?}"
         );
         assert!(half.0.get() < 10, "{} evaluations", half.0.get());
