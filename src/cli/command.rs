@@ -170,6 +170,7 @@ pub(crate) fn with_all(line: clap::Command) -> clap::Command {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::slice;
 
     #[derive(clap::Args)]
     struct Nothing {}
@@ -189,7 +190,7 @@ mod tests {
             text::place(OTHER.place)
         );
         for order in [[&ONE, &ALONE, &OTHER], [&OTHER, &ONE, &ALONE]] {
-            assert_eq!(faults(order), [expected.clone()]);
+            assert_eq!(faults(order), slice::from_ref(&expected));
         }
         assert_eq!(contradictions(), None);
     }

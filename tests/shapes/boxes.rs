@@ -2,6 +2,7 @@
 
 use crate::common::model;
 use glam::DVec3;
+use std::slice;
 use tabray::exact::Scalar;
 use tabray::geometry::{Aabb, Frame, Ray, RayRange};
 use tabray::query::{ExactRay, Query, Verdict};
@@ -37,7 +38,8 @@ fn rays_straight_on_meet_the_extremes_of_tori_their_copies_and_unions() {
                 for axis in [DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z] {
                     let ray = ExactRay::new(8.0 * axis, -axis).expect("a ray");
                     let first = 8.0 - scale * (radius + tube);
-                    let answers = [query.traced(&[ray.clone()]), query.proven(&[ray], false)];
+                    let answers =
+                        [query.traced(slice::from_ref(&ray)), query.proven(slice::from_ref(&ray), false)];
                     for answer in answers.iter().flatten() {
                         if answer.verdict != Verdict::Hit || (answer.t - first).abs() > 1e-12 {
                             wrong.push(format!("{answer:?}, not at {first}:\n{text}"));

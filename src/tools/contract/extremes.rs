@@ -33,7 +33,7 @@ pub fn try_objects(objects: &[Object]) -> Result<(), Fault> {
         let shape = &object.shape;
         let Some(Aabb { low, high }) = shape.facts().bounds else { continue };
         let length = (high - low).length();
-        if !(length < MISS) {
+        if length >= MISS || length.is_nan() {
             continue;
         }
         let middle = low.midpoint(high);

@@ -127,9 +127,9 @@ pub fn mesh(
 /// Estimates the work, from the errors with which these cells would do: halved once, they do with a quarter of the error
 /// where the surface is smooth, and with half of it at edges.
 fn expected(cells: &Cells, triangles: &Triangles, body: &Body<'_>, error: f64, last: u32) -> Event {
-    let (most, gain) = (last - cells.halvings(), if body.has_edges { 2.0 } else { 4.0f64 });
+    let (most, gain) = (last - cells.halvings(), if body.has_edges { 1 } else { 2 });
     let suffices = |more: &u32| {
-        let error = error * gain.powi(*more as i32);
+        let error = error * f64::from(1 << (gain * more));
         proof::far(cells, triangles, body, (error, false), &|_| ()).is_empty()
     };
     let more = (1..most).find(suffices).unwrap_or(most);
