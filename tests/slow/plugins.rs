@@ -357,7 +357,7 @@ fn a_new_command_works_and_is_listed_in_its_group() {
     let help = BUILT.prints_of("count", &["--help"]);
     let (_, inside) = help.split_once("\nLooking inside:\n").expect("the group");
     let (inside, _) = inside.split_once("\n\n").expect("the group ends");
-    assert!(inside.ends_with("\n  count        Count the objects of a scene"), "{inside}");
+    assert!(inside.ends_with("\n  count        Tell how many objects a scene has"), "{inside}");
     assert!(BUILT.prints_of("count", &["completions", "bash"]).contains("count__subcmd__count"));
 }
 

@@ -10,7 +10,7 @@ inventory::submit! {
     Command::new("template", Group::Inside, &Run(run))
 }
 
-/// Count the objects of a scene
+/// Tell how many objects a scene has
 #[derive(clap::Args)]
 struct Args {
     /// The scene
