@@ -20,7 +20,7 @@ pub struct WholeLine {
     /// A coordinate times this number, over two to the power `exponent`, is an integer.
     factor: IBig,
     exponent: i64,
-    /// The same for a component of the direction.
+    /// A component of the direction times this number, over two to the power `dir_exponent`, is an integer.
     dir_factor: IBig,
     dir_exponent: i64,
 }
@@ -213,7 +213,7 @@ mod tests {
         assert!(behind.is_some_and(|(behind, at)| !behind.enters && at.low == at.high));
     }
 
-    /// Of the triangles around a corner, the moved line crosses one, from whichever side it comes.
+    /// A line moved off a corner crosses one of the triangles around it, from whichever side it comes.
     #[test]
     fn beside_a_corner_one_triangle_is_crossed() {
         let top = [0.125, 0.75, 0.375];
