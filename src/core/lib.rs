@@ -30,30 +30,15 @@
 //!
 //! `cargo run -p tabray-core --example torus` draws a shape; examples of `tabray-lang` render scenes.
 
-#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
-
 // The vectors of positions and colours, and the numbers of formulas.
 pub use glam;
 pub use tabray_exact as exact;
+pub use tabray_render as render;
+pub use tabray_render::output;
+pub use tabray_shapes as shapes;
+pub use tabray_world as world;
+pub use tabray_world::{beside, choices, kernels, levels, named, queries_by_equation};
+pub use tabray_world::{files, geometry, memory, parallel, scene, simd, text};
 
-pub mod files;
-pub mod geometry;
-pub mod memory;
-pub mod output;
-pub mod parallel;
 pub mod prelude;
 pub mod query;
-pub mod render;
-pub mod scene;
-pub mod shapes;
-pub mod simd;
-pub mod text;
-pub mod world;
-
-/// Returns the configuration of property tests. Failed cases are kept below `tests/`.
-#[cfg(test)]
-pub(crate) fn properties() -> proptest::prelude::ProptestConfig {
-    use proptest::test_runner::{Config, FileFailurePersistence};
-    let kept = FileFailurePersistence::SourceParallel("../tests/proptest-regressions");
-    Config { failure_persistence: Some(Box::new(kept)), ..Config::default() }
-}

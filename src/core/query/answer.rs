@@ -1,9 +1,9 @@
 //! Answers about the first hits of rays.
 
 use super::ray::ExactRay;
-use crate::world::certify::{self, Precision};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Interval, Wide};
+use tabray_world::certify::{self, Precision};
 
 /// What is proven about a ray's first hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -3,13 +3,13 @@
 use super::answer::{Answer, Verdict};
 use super::ray::ExactRay;
 use super::scene::Query;
-use crate::shapes::solid;
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, Precise, Precision};
 use f256::f256;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
+use tabray_shapes::solid;
+use tabray_world::any_shape::AnyShape;
+use tabray_world::certify::{Enclosure, Precise, Precision};
 
 /// A crossing of a ray and a surface, or what is known behind the last one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! Which of a scene's objects a ray hits first, as far as intervals tell.
 
-use crate::geometry::sight::Sight;
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, Precision};
 use f256::f256;
 use tabray_exact::interval::{Float, Wide};
+use tabray_world::any_shape::AnyShape;
+use tabray_world::certify::{Enclosure, Precision};
+use tabray_world::geometry::sight::Sight;
 
 /// The certain first hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! Rays whose numbers are exact.
 
-use crate::geometry::sight::Sight;
-use crate::world::certify;
 use f256::f256;
 use glam::DVec3;
 use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_world::certify;
+use tabray_world::geometry::sight::Sight;
 
 /// A ray whose digits all count: the half-line from a point along a direction, which need not be a unit vector.
 #[derive(Clone, Debug)]

@@ -3,18 +3,18 @@
 use super::answer::{Answer, Surroundings, Verdict};
 use super::first::{Candidate, FirstHit, FirstHits, first_by, first_of, last_end};
 use super::ray::ExactRay;
-use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::sight::{Line, Sight};
-use crate::render::observer::Hit;
-use crate::render::plan::Plan;
-use crate::render::trace;
-use crate::scene::model::Model;
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{Enclosure, Precision};
-use crate::world::hittable::SurfaceHit;
 use f256::f256;
 use std::slice;
 use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_render::observer::Hit;
+use tabray_render::plan::Plan;
+use tabray_render::trace;
+use tabray_world::any_shape::AnyShape;
+use tabray_world::certify::{Enclosure, Precision};
+use tabray_world::geometry::aabb::{Aabb, SLACK};
+use tabray_world::geometry::sight::{Line, Sight};
+use tabray_world::hittable::SurfaceHit;
+use tabray_world::scene::model::Model;
 
 /// A scene, prepared for queries about hits.
 pub struct Query<'m> {
@@ -58,7 +58,7 @@ impl<'m> Query<'m> {
     /// Proves what a ray hits first. `found` is what the tracer finds, where that is known; the proof does not depend
     /// on it, but is faster with it.
     ///
-    /// A proof is about the real numbers of the scene and of the ray ([`certify`](crate::world::certify)). In a scene
+    /// A proof is about the real numbers of the scene and of the ray ([`certify`](tabray_world::certify)). In a scene
     /// with many objects, it leaves out those whose bounding boxes the ray certainly misses or meets later.
     pub fn first(&self, ray: &ExactRay, found: Option<&Hit>) -> (FirstHits, Precision) {
         let shape = |index: usize| (index, self.shape(index));

@@ -1,0 +1,35 @@
+//! The absorption of light in media, as in the tracer. The medium of a path belongs to the object that the lines
+//! leave on its inside, or otherwise to the object that they hit on its inside.
+
+use super::number::Number;
+use super::scene::{Colour, EnclosedScene, Path};
+use tabray_exact::scalar::per_axis;
+use tabray_world::interface::Medium;
+
+/// Returns the medium that absorbs light between the start of lines and their hit. `met` is the object hit, if any,
+/// and whether it is hit on its inside.
+pub(super) fn between<N: Number>(
+    scene: &EnclosedScene,
+    path: &Path<N>,
+    met: Option<(usize, bool)>,
+) -> Option<Medium> {
+    let inside = |object: usize, is_inside: bool| {
+        if is_inside { scene.model.objects[object].material.medium() } else { None }
+    };
+    let left = path.leaves.and_then(|place| inside(place.object, path.is_inside));
+    left.or_else(|| met.and_then(|(object, is_inside)| inside(object, is_inside)))
+}
+
+/// Encloses the fractions of light that pass through a medium over a length in world units; `None` is endless.
+pub(super) fn passed<N: Number>(medium: &Medium, length: Option<N>) -> Colour<N> {
+    let (zero, one) = (N::constant(0.0), N::constant(1.0));
+    let left = medium.left();
+    per_axis(|channel| match length {
+        _ if left[channel] == 1.0 => one,
+        None => zero,
+        Some(length) => {
+            let logarithm = N::constant(left[channel]).ln();
+            (logarithm * length / N::constant(medium.at())).exp().min(one).max(zero)
+        }
+    })
+}

@@ -1,0 +1,137 @@
+//! A scene for proofs of colours: the objects that lines may hit.
+
+use super::number::{Hit, Number, coarse};
+use crate::plan::depth::{self, Depth};
+use std::cell::Cell;
+use tabray_exact::interval::{Float, Interval};
+use tabray_world::geometry::aabb::Aabb;
+use tabray_world::geometry::sight::Line;
+use tabray_world::patch::Window;
+use tabray_world::scene::model::Model;
+
+/// A colour.
+pub type Colour<N> = [N; 3];
+
+/// A place on an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    /// The object's index.
+    pub object: usize,
+    /// The part of the object, as proofs count them.
+    pub part: usize,
+}
+
+/// Lines, and the place that they leave.
+#[derive(Clone, Copy)]
+pub(super) struct Path<N> {
+    pub line: Line<N>,
+    /// The place on which the lines' true starts lie, if they lie on an object.
+    pub leaves: Option<Place>,
+    /// Whether the lines leave that object on its inside.
+    pub is_inside: bool,
+}
+
+/// What is known of a model's colours before any ray is followed.
+pub struct SceneBounds {
+    /// A box around each object that has bounds.
+    boxes: Vec<Option<Aabb>>,
+    /// A bound on any channel of what a primary ray returns, times the path length; infinite where there is none.
+    pub(super) most: f64,
+    /// Whether the fraction of each channel that glass lets pass is known to lie between 0 and 1.
+    pub(super) passes_fractions: bool,
+}
+
+impl SceneBounds {
+    /// Returns the bounds of a model.
+    pub fn of(model: &Model) -> Self {
+        Self {
+            boxes: model.objects.iter().map(|object| object.shape.bounds()).collect(),
+            most: depth::most(model),
+            passes_fractions: model.tints_are_fractions(),
+        }
+    }
+}
+
+/// A scene whose colours are enclosed.
+pub struct EnclosedScene<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// The indices of the lights that count.
+    pub lights: &'a [usize],
+    /// How rays continue, where any do.
+    pub depth: Option<&'a Depth>,
+    /// The bounds of the model.
+    pub bounds: &'a SceneBounds,
+    /// The window through which samples look, if they show patches of surfaces.
+    pub window: Option<Window>,
+    /// Whether the first hit of a ray may be on a shape without an equation.
+    pub meets_uncertified: Cell<bool>,
+}
+
+impl EnclosedScene<'_> {
+    /// Notes that the hits of the object of this index are open. For a shape without an equation, they always are.
+    pub(super) fn note_open(&self, object: usize) {
+        if !self.model.objects[object].shape.is_certified() {
+            self.meets_uncertified.set(true);
+        }
+    }
+
+    /// Calls `met` with the possible hits of all lines with an object, until `met` returns false. `coarse` encloses the
+    /// lines. Returns whether `met` never returned false.
+    pub(super) fn hits<N: Number>(
+        &self,
+        path: &Path<N>,
+        coarse: &Line<Interval>,
+        object: usize,
+        met: &mut dyn FnMut(Hit<N>, Place) -> bool,
+    ) -> bool {
+        let from = match self.bounds.boxes[object].map(|Aabb { low, high }| coarse.clip(low, high)) {
+            None => 0.0,
+            Some(Some((from, _))) => from,
+            Some(None) => return true,
+        };
+        let leaves = path.leaves.filter(|place| place.object == object).map(|place| place.part);
+        let Some(proven) = self.model.objects[object].shape.proven() else {
+            return met(Hit::Doubtful(N::of(from)), Place { object, part: 0 });
+        };
+        let mut goes_on = true;
+        N::hits(proven, &path.line, leaves, &mut |hit, part| {
+            goes_on = met(hit, Place { object, part });
+            goes_on
+        });
+        goes_on
+    }
+
+    /// Returns a t beyond which lines have no hit with an object.
+    pub(super) fn leaves(&self, coarse: &Line<Interval>, object: usize) -> f64 {
+        let around = self.bounds.boxes[object].and_then(|Aabb { low, high }| coarse.clip(low, high));
+        around.map_or(f64::INFINITY, |(_, to)| to)
+    }
+
+    /// Returns the first hits that lines may have, and whether each line certainly has one.
+    pub(super) fn first<N: Number>(&self, path: &Path<N>) -> (Vec<(Hit<N>, Place)>, bool) {
+        let (mut all, mut end) = (Vec::new(), N::End::INFINITY);
+        let coarse = coarse(&path.line);
+        for object in 0..self.model.objects.len() {
+            self.hits(path, &coarse, object, &mut |hit, place| {
+                if let Hit::Certain(at) = hit {
+                    end = end.min(at.range().high);
+                }
+                all.push((hit, place));
+                true
+            });
+        }
+        all.retain(|(hit, _)| hit.low() <= end);
+        // Of several hits at exactly the same distance, the one of the first object in the file is seen.
+        if let Some((first @ Hit::Certain(at), _)) = all.first().copied()
+            && at.is_exact()
+            && all.iter().all(|(hit, _)| *hit == first)
+        {
+            all.truncate(1);
+        }
+        if !matches!(all[..], [(Hit::Certain(_), _)]) {
+            all.iter().for_each(|(_, place)| self.note_open(place.object));
+        }
+        (all, end < N::End::INFINITY)
+    }
+}

@@ -1,0 +1,179 @@
+//! The points of a surface that lines hit.
+
+use super::number::{Endpoint, Number, ranges};
+use super::scene::{Colour, EnclosedScene, Place};
+use super::tangents::tangents;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{dot, per_axis};
+use tabray_world::certify::Precise;
+use tabray_world::geometry::sight::Line;
+use tabray_world::patch::{LEAST_COSINE, MEAN_ROUNDING, PatchBounds, Window};
+use tabray_world::rules;
+use tabray_world::scene::model::Object;
+use tabray_world::surface_point::PointBounds;
+
+/// A patch of a surface, whose mean colour is shown.
+struct SeenPatch<F> {
+    /// The maximum distance of the points from the middle, in world units along each axis.
+    reach: f64,
+    bounds: Option<PatchBounds<F>>,
+}
+
+/// The points that lines hit, and how they look there.
+pub(super) struct HitPoints<N> {
+    pub place: Place,
+    pub at: [N; 3],
+    /// The unit normals with which the points are shaded, turned to face the lines where both sides are lit.
+    pub normal: [N; 3],
+    /// Whether the normals are turned inward.
+    pub is_inside: bool,
+    /// The unit normals of the surface itself, turned likewise, where the points are shaded with others.
+    pub unbent: Option<[N; 3]>,
+    pub ambient: Colour<N>,
+    pub diffuse: Colour<N>,
+    pub specular: Colour<N>,
+}
+
+impl<N: Number> HitPoints<N> {
+    /// Returns the points at t of lines, once for each way that the normals may face; `None` where the normals or the
+    /// look are open. `window` has the samples' window and the path lengths before the lines: with it, a shader's
+    /// look is a mean over a patch.
+    pub fn facing(
+        scene: &EnclosedScene,
+        (line, length_of_dir): (&Line<N>, N),
+        t: N,
+        place: Place,
+        window: Option<(Window, N)>,
+    ) -> Option<Vec<Self>> {
+        let object = &scene.model.objects[place.object];
+        let zero = N::of(0.0);
+        let at = line.at(t);
+        let shape = object.shape.proven()?;
+        let normal = N::gradient(shape, at, place.part);
+        let length = dot(normal, normal).sqrt();
+        let range = length.range();
+        if range.low <= zero || !range.is_bounded() {
+            return None;
+        }
+        let outward = per_axis(|axis| normal[axis] / length);
+        let toward = if object.shape.is_two_sided() {
+            dot(outward, line.dir).range()
+        } else {
+            Interval::point(N::of(-1.0))
+        };
+        let window = window.filter(|_| object.shader.sees().patch);
+        let patch = window.map(|(Window { start, spread, .. }, travelled)| {
+            let width = (travelled + t * length_of_dir) * N::constant(spread) + N::constant(start);
+            let dir = per_axis(|axis| line.dir[axis] / length_of_dir);
+            let cosine = dot(outward, dir).abs().coarse().low;
+            SeenPatch {
+                reach: (1.0 + 1e-9) * width.coarse().high / cosine.max(LEAST_COSINE),
+                bounds: PatchBounds::seen(ranges(at), ranges(dir), ranges(outward), width.range()),
+            }
+        });
+        let patch = patch.as_ref();
+        let mut all = Vec::with_capacity(2);
+        if toward.low <= zero {
+            all.push(Self::shaded(object, at, place, outward, false, patch)?);
+        }
+        if toward.high >= zero {
+            all.push(Self::shaded(object, at, place, per_axis(|axis| -outward[axis]), true, patch)?);
+        }
+        Some(all)
+    }
+
+    /// Returns points whose normals face the lines, turned inward or not. For a patch, the look is the mean over the
+    /// patch.
+    fn shaded(
+        object: &Object,
+        at: [N; 3],
+        place: Place,
+        own: [N; 3],
+        is_turned: bool,
+        patch: Option<&SeenPatch<N::End>>,
+    ) -> Option<Self> {
+        let shape = object.shape.proven()?;
+        // Mirrors use the shading normal, too.
+        let normal = N::shading_normal(shape, at, place.part, own)?;
+        let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
+        let (sees, outward) = (object.shader.sees(), ranges(outward));
+        let seen = |at| PointBounds::seen(shape, sees, place.part, at, Some(outward));
+        let mut at_ranges = ranges(at);
+        if let Some(SeenPatch { reach, .. }) = patch {
+            let around = Interval { low: N::of(-reach), high: N::of(*reach) };
+            at_ranges = at_ranges.map(|along| along + around);
+        }
+        let mut bounds = patch.and_then(|patch| patch.bounds);
+        if let Some(bounds) = &mut bounds
+            && let Some(uv) = seen(ranges(at)).uv
+        {
+            let proofs = N::End::proofs(shape);
+            bounds.find_uv(uv, |at| proofs.uv_bounds(at, place.part));
+        }
+        let point = PointBounds { patch: bounds, ..seen(at_ranges) };
+        let look = N::End::look(object, &point)?;
+        let normal = if object.shader.bends() {
+            // The normals are those of the point, not the mean over a patch.
+            let mut point = seen(ranges(at));
+            if sees.tangents {
+                point.tangents = tangents(&object.shape, place.part, point.position, outward);
+            }
+            let bent = N::End::bent(&*object.shader, &point, outward)?.map(N::enclosing);
+            if is_turned { bent.map(|along| -along) } else { bent }
+        } else {
+            normal
+        };
+        let unbent = (normal != own).then_some(own);
+        let rounding = |of: Interval<N::End>| {
+            let error = if patch.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
+            of + Interval { low: N::of(-error), high: N::of(error) }
+        };
+        let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));
+        let (ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
+        Some(Self {
+            place,
+            at,
+            normal,
+            is_inside: is_turned,
+            unbent,
+            ambient,
+            diffuse,
+            specular: enclosing(look.specular),
+        })
+    }
+
+    /// Returns the mirrored directions of rays along `dir`, with the same length; `None` where they are open.
+    pub fn mirrored(&self, dir: [N; 3]) -> Option<[N; 3]> {
+        let mirrored = rules::mirrored(dir, self.normal);
+        let Some(unbent) = self.unbent else { return Some(mirrored) };
+        // A direction that bent normals mirror through the surface is turned back.
+        let through = (dot(mirrored, unbent) * dot(dir, unbent)).range();
+        if through.low > N::of(0.0) {
+            Some(rules::mirrored(mirrored, unbent))
+        } else {
+            (through.high <= N::of(0.0)).then_some(mirrored)
+        }
+    }
+}
+
+/// Returns the fraction of light that passes through an object at points; `None` where it is open.
+pub(super) fn tint<N: Number>(transparency: f64, diffuse: Colour<N>) -> Option<Colour<N>> {
+    let [red, green, blue] = diffuse;
+    let (transparency, one) = (N::constant(transparency), N::constant(1.0));
+    let strongest = red.max(green).max(blue);
+    // The strongest channel is divided by itself, and no other is greater.
+    let ratio = |channel: N| {
+        if channel == strongest && strongest.is_exact() { one } else { (channel / strongest).min(one) }
+    };
+    let range = strongest.range();
+    if range.low > N::of(0.0) {
+        Some(per_axis(|channel| transparency * ratio(diffuse[channel])))
+    } else {
+        (range.high <= N::of(0.0)).then_some([transparency; 3])
+    }
+}
+
+/// Tells whether a colour is black, for certain.
+pub(super) fn is_black<N: Number>(colour: &Colour<N>) -> bool {
+    colour.iter().all(|channel| channel.is_zero())
+}

@@ -1,0 +1,191 @@
+//! How the [trees](super::tree) of a packet of primary rays grow, wave by wave.
+
+use super::arrays::VectorList;
+use super::context::{ShadingScratch, Tracer};
+use super::ray_group::RayGroup;
+use super::tree::{Budget, End, Ends, OpenRay, Tree};
+use super::wave::TreeScratch;
+use crate::limits::MAX_RAYS;
+use crate::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
+use crate::plan::depth::Depth;
+use glam::DVec3;
+use std::mem::take;
+use tabray_world::geometry::ray::Side;
+use tabray_world::geometry::ray_packet::PACKET_SIZE;
+use tabray_world::interface::Crossing;
+use tabray_world::material::Rgb;
+
+/// The number of trees that grow together: few, so their open rays take little memory.
+const TOGETHER: usize = 64;
+
+/// The minimum weight of rays whose hits are recorded to tell the samples of a pixel apart.
+const HEAVY: f64 = 1.0 / 16.0;
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Computes the colours that primary rays return under the free rules.
+    pub(super) fn grow(&mut self, depth: &Depth, group: &mut RayGroup, colours: &mut VectorList) {
+        let (len, ends) = (group.len, Ends::of(&self.plan.camera));
+        let mut scratch = self.scratch.trees.take().unwrap_or_default();
+        // A budget that differs from the usual one was set for this ray.
+        let most = |own: &u32| match *own == MAX_RAYS as u32 {
+            true => ends.budget,
+            false => Budget { rays: *own, work: *own },
+        };
+        let budgets: Vec<Budget> = group.ray_budget[..len].iter().map(most).collect();
+        group.ray_budget.fill(MAX_RAYS as u32);
+        group.places.clear();
+        group.places.extend(0..len as u32);
+        scratch.wave.clear();
+        scratch.wave.extend((0..len).map(OpenRay::primary));
+        scratch.begin_wave();
+        scratch.outcomes.iter_mut().for_each(|outcome| outcome.cost = MAX_RAYS as u32);
+        self.scratch.trees = Some(scratch);
+        self.scratch.path_hashes.is_mixed = true;
+        self.trace(group, colours);
+        let mut scratch = self.scratch.trees.take().unwrap_or_default();
+        scratch.note(group, colours);
+        let first = take(&mut scratch.outcomes);
+        for start in (0..len).step_by(TOGETHER) {
+            let block = start..len.min(start + TOGETHER);
+            scratch.trees.resize_with(scratch.trees.len().max(block.len()), Tree::default);
+            for (tree, lane) in scratch.trees.iter_mut().zip(block.clone()) {
+                tree.begin(budgets[lane]);
+            }
+            scratch.wave.clear();
+            scratch.wave.extend(block.clone().map(OpenRay::primary));
+            scratch.outcomes.clear();
+            scratch.outcomes.extend_from_slice(&first[block.clone()]);
+            while !scratch.wave.is_empty() {
+                scratch.add(start, depth, &ends);
+                let TreeScratch { trees, wave, .. } = &mut *scratch;
+                wave.clear();
+                trees[..block.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, wave));
+                scratch = self.follow(scratch, start);
+            }
+            for (tree, lane) in scratch.trees.iter().zip(block) {
+                let End { colour, apart } = tree.end(&ends);
+                colours.set(lane, colour);
+                if W::SEES
+                    && let Some(reason) = tree.drops()
+                {
+                    self.observer.see(Event::Dropped(reason));
+                }
+                if apart > 0.0 {
+                    self.miss_levels(lane, apart);
+                }
+            }
+        }
+        self.scratch.trees = Some(scratch);
+    }
+
+    /// Follows the rays of a wave. `first` is the lane of the first tree.
+    fn follow(&mut self, mut scratch: Box<TreeScratch>, first: usize) -> Box<TreeScratch> {
+        scratch.begin_wave();
+        let (mut group, mut seen) = (take(&mut scratch.group), take(&mut scratch.seen));
+        let mut order = take(&mut scratch.order);
+        order.clear();
+        order.extend(0..scratch.wave.len() as u32);
+        // The hits of rays of little weight are not recorded, as another sample's tree may have ended before them.
+        let records = self.scratch.path_hashes.is_on;
+        let kind = |place: u32| {
+            let OpenRay { object, weight, .. } = scratch.wave[place as usize];
+            (object, records && weight.abs().max_element() >= HEAVY)
+        };
+        order.sort_by_key(|place| kind(*place));
+        let kinds: Vec<_> = order.iter().map(|place| kind(*place)).collect();
+        // An observer sees one ray after the other.
+        let together = if W::SEES { 1 } else { PACKET_SIZE };
+        self.depth += 1;
+        let mut start = 0;
+        while let Some((object, is_heavy)) = kinds.get(start).copied() {
+            let same = kinds[start..].iter().take(together).take_while(|other| **other == (object, is_heavy));
+            let places = &order[start..start + same.count()];
+            start += places.len();
+            self.scratch.path_hashes.is_on = is_heavy;
+            scratch.gather(places, first, &mut group);
+            let count = group.padded();
+            let shape = &self.model.objects[object as usize].shape;
+            group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);
+            self.begin_open(&scratch.wave, places);
+            self.scratch.trees = Some(scratch);
+            self.trace(&mut group, &mut seen);
+            scratch = self.scratch.trees.take().unwrap_or_default();
+            scratch.note(&group, &seen);
+        }
+        self.depth -= 1;
+        self.scratch.path_hashes.is_on = records;
+        (scratch.group, scratch.seen, scratch.order) = (group, seen, order);
+        scratch
+    }
+
+    /// Reports rays that are followed together.
+    fn begin_open(&mut self, wave: &[OpenRay], places: &[u32]) {
+        let of_kind =
+            |kind: RayKind| places.iter().filter(|place| wave[**place as usize].kind == kind).count();
+        for kind in [RayKind::Reflected, RayKind::Transmitted] {
+            self.observer.count(Count::Rays(kind, of_kind(kind)));
+        }
+        if W::SEES {
+            let OpenRay { kind, weight, .. } = wave[places[0] as usize];
+            self.observer.see(Event::Begin(match kind {
+                RayKind::Transmitted => RayPurpose::Transmitted { tint: weight, kept: 1.0 },
+                _ => RayPurpose::Reflected { specular: weight },
+            }));
+        }
+    }
+
+    /// Opens the rays that continue from a packet's hits on an object, and leaves the points' own light in `colours`.
+    pub(super) fn branch(
+        &mut self,
+        group: &RayGroup,
+        shading: &mut ShadingScratch,
+        colours: &mut VectorList,
+    ) {
+        let ShadingScratch { surface, dir, .. } = shading;
+        let object = &self.model.objects[surface.index];
+        let transparency = object.material.transparency;
+        if transparency == 0.0 && !surface.is_mirror && object.material.interface.is_none() {
+            return;
+        }
+        let Some(mut scratch) = self.scratch.trees.take() else { return };
+        let (count, kept, is_flat) = (group.padded(), 1.0 - transparency, object.is_flat_mirror());
+        let crossings = object.material.interface.as_deref();
+        let crossings = crossings.map(|interface| surface.crossings(interface, group.dir.view(count)));
+        surface.mirror_rays(group.dir.view(count), dir);
+        for lane in 0..group.len {
+            let side = surface.sides[lane];
+            let tint = || surface.tint(object, lane);
+            let (through, onward, reflected) = match &crossings {
+                Some(crossings) => {
+                    let Crossing { reflected, onward } = crossings[lane];
+                    (onward.map_or(Rgb::ZERO, |_| tint() * (Rgb::ONE - reflected)), onward, reflected)
+                }
+                None => {
+                    let through = if transparency == 0.0 { Rgb::ZERO } else { tint() };
+                    (through, Some(group.dir.get(lane)), surface.mirror(lane))
+                }
+            };
+            colours.set(lane, kept * colours.get(lane));
+            let place = group.places[lane] as usize;
+            let before = scratch.wave[place];
+            if before.depth as usize >= self.plan.bounces {
+                continue;
+            }
+            let passed = surface.passed.get(lane).map_or(before.weight, |passed| before.weight * *passed);
+            let ray = surface.open_ray(lane, before);
+            let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
+                let keeps = match kind {
+                    RayKind::Transmitted => crossings.is_none(),
+                    _ => is_flat,
+                };
+                let (weight, shows_patches) = (passed * weight, before.shows_patches && keeps);
+                (weight != Rgb::ZERO).then_some(OpenRay { weight, dir, side, kind, shows_patches, ..ray })
+            };
+            scratch.outcomes[place].onward = [
+                onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),
+                open(reflected, dir.get(lane), side, RayKind::Reflected),
+            ];
+        }
+        self.scratch.trees = Some(scratch);
+    }
+}

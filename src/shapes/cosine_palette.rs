@@ -1,0 +1,107 @@
+//! Colours by the angle of a direction: each channel is a cosine.
+
+use glam::DVec2;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::Scalar;
+use tabray_world::certify::Precise;
+use tabray_world::material::{Look, Material, Rgb};
+
+/// The red, green and blue of a direction at the angle t: `1 + cos(frequency t + phase)` for each channel, times the
+/// brightness.
+#[derive(Clone, Copy)]
+pub struct CosinePalette {
+    /// Red, green and blue.
+    pub hues: [Hue; 3],
+    /// Half of the brightest possible channel value.
+    pub brightness: f64,
+}
+
+/// A channel. Its phase is an angle plus a number of thirds of a turn.
+#[derive(Clone, Copy)]
+pub struct Hue {
+    frequency: i64,
+    phase: f64,
+    thirds: usize,
+    /// The cosine and the sine of the angle.
+    turn: DVec2,
+}
+
+impl CosinePalette {
+    /// Tells whether the palette is that of the notes: frequency 2, with phases a third of a turn apart.
+    pub fn are_of_the_notes(&self) -> bool {
+        let is_of_the_notes =
+            |(channel, hue): (usize, &Hue)| (hue.frequency, hue.phase, hue.thirds) == (2, 0.0, channel);
+        self.hues.iter().enumerate().all(is_of_the_notes)
+    }
+
+    /// Returns the colour in a direction. The angle itself is not computed, which avoids the rounding of `acos` and
+    /// arguments outside of its domain.
+    #[inline]
+    pub fn colour<const OF_THE_NOTES: bool>(&self, toward: DVec2) -> Rgb {
+        // The point itself has no direction, and cosine and sine count as 0.
+        let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
+        let channels = if OF_THE_NOTES {
+            [0, 1, 2].map(|thirds| channel(thirds, (x * x - y * y, 2.0 * x * y)))
+        } else {
+            self.hues.map(|hue| {
+                let multiple = hue.multiple((x, y), |part| part);
+                channel(hue.thirds, turned(multiple, hue.turn.into(), |part| part))
+            })
+        };
+        self.brightness * Rgb::from(channels)
+    }
+
+    /// Encloses [`colour`](Self::colour).
+    pub fn enclose<F: Precise>(&self, [x, y]: [Interval<F>; 2]) -> [Interval<F>; 3] {
+        let n = Interval::<F>::constant;
+        let within = |of: Interval<F>| of.max(n(-1.0)).min(n(1.0));
+        let square = x.powi(2) + y.powi(2);
+        let channels = if self.are_of_the_notes() {
+            let twice = (within((x.powi(2) - y.powi(2)) / square), within(n(2.0) * x * y / square));
+            [0, 1, 2].map(|thirds| channel(thirds, twice))
+        } else {
+            let (x, y) = (within(x / square.sqrt()), within(y / square.sqrt()));
+            self.hues.map(|hue| {
+                let turn = (n(hue.phase).cos(), n(hue.phase).sin());
+                channel(hue.thirds, turned(hue.multiple((x, y), within), turn, within))
+            })
+        };
+        channels.map(|channel| n(self.brightness) * channel)
+    }
+
+    /// Bounds the reflectivities of a shader with these ambient colours and the material's other reflectivities.
+    pub fn brightest(&self, material: &Material) -> Option<Look> {
+        let Material { diffuse, specular, .. } = *material;
+        let is_sound = diffuse.min_element() >= 0.0;
+        // The largest sum of 1 and a cosine is 2, up to a few ulps, far less than 1e-6.
+        is_sound.then_some(Look { ambient: Rgb::splat(2.000001 * self.brightness), diffuse, specular })
+    }
+}
+
+impl Hue {
+    /// Makes a channel. Its phase is `phase`, in radians, plus a number of thirds of a turn.
+    pub fn new(frequency: i64, phase: f64, thirds: usize) -> Self {
+        Self { frequency, phase, thirds, turn: DVec2::new(libm::cos(phase), libm::sin(phase)) }
+    }
+
+    /// Returns the cosine and the sine of an angle times the frequency.
+    fn multiple<N: Scalar>(&self, angle: (N, N), within: impl Fn(N) -> N) -> (N, N) {
+        (1..self.frequency).fold(angle, |multiple, _| turned(multiple, angle, &within))
+    }
+}
+
+/// Returns the cosine and the sine of the sum of two angles.
+fn turned<N: Scalar>((cos, sin): (N, N), (x, y): (N, N), within: impl Fn(N) -> N) -> (N, N) {
+    (within(cos * x - sin * y), within(cos * y + sin * x))
+}
+
+/// Returns 1 plus the cosine of the sum of an angle and some thirds of a turn.
+fn channel<N: Scalar>(thirds: usize, (cos, sin): (N, N)) -> N {
+    let (one, half) = (N::constant(1.0), N::constant(0.5));
+    let half_root_3 = half * N::constant(3.0).sqrt();
+    match thirds {
+        0 => one + cos,
+        1 => one - half * cos - half_root_3 * sin,
+        _ => one - half * cos + half_root_3 * sin,
+    }
+}

@@ -1,0 +1,123 @@
+//! Crossings of lines whose numbers are fractions, decided with integers. Rays through edges and corners take no more
+//! digits than others that way.
+
+use super::surface::Surface;
+use tabray_exact::interval::{Interval, Wide};
+use tabray_exact::whole_line::{Crossing, Seen, WholeLine};
+use tabray_world::accuracy::Bounded;
+use tabray_world::certify::{HitEnclosure, Precise, exact_line};
+use tabray_world::geometry::sight::Line;
+
+/// The faces that a line crosses with t > 0, in the order of their places.
+pub(super) struct ExactCrossings {
+    line: WholeLine,
+    faces: Vec<(Crossing, usize)>,
+}
+
+impl ExactCrossings {
+    /// Returns the groups of crossings at the same place, each with the t of the place.
+    pub fn places(&self) -> impl Iterator<Item = (Wide, &[(Crossing, usize)])> {
+        let same = self.faces.chunk_by(|one, other| one.0 == other.0);
+        same.map(|here| (self.line.t(&here[0].0), here))
+    }
+}
+
+impl Surface {
+    /// Returns the faces that a line crosses with t > 0; `None` if its numbers are no fractions. If `only_first`, faces
+    /// behind a certain hit may be omitted.
+    pub(super) fn exact_crossings<A: Bounded, F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+        only_first: bool,
+    ) -> Option<ExactCrossings> {
+        let fine = Line { origin: line.origin.map(F::widen), dir: line.dir.map(F::widen) };
+        let exact = exact_line(&fine)?;
+        let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
+        let mut met = self.met::<A, f64>(&coarse, |_| false, only_first);
+        if only_first {
+            let end = met.iter().filter_map(|((_, found), _)| match found {
+                HitEnclosure::Hits(at) => Some(at.high),
+                _ => None,
+            });
+            let end = end.fold(f64::INFINITY, f64::min);
+            met.retain(|((low, _), _)| *low <= end);
+        }
+        let coordinates = met.iter().flat_map(|(_, face)| self.corners(*face)).flat_map(|at| at.to_array());
+        let line = WholeLine::new(&exact, coordinates)?;
+        let mut seen: Vec<(u32, Seen)> = Vec::with_capacity(8);
+        let mut faces = Vec::with_capacity(met.len());
+        for (_, face) in met {
+            let places = self.faces[face].map(|vertex| {
+                let known = seen.iter().position(|(other, _)| *other == vertex);
+                known.unwrap_or_else(|| {
+                    seen.push((vertex, line.seen(self.vertices[vertex as usize].to_array())));
+                    seen.len() - 1
+                })
+            });
+            let crossing = line.crossing(places.map(|place| &seen[place].1));
+            faces.extend(crossing.map(|crossing| (crossing, face)));
+        }
+        faces.sort_by(|(one, _), (other, _)| one.cmp(other));
+        Some(ExactCrossings { line, faces })
+    }
+
+    /// Returns the enclosure of a line's first hit with t > 0, and the hit face, like
+    /// [`first_along`](Self::first_along); `None` if the line's numbers are no fractions.
+    pub(super) fn first_exactly<A: Bounded, F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+    ) -> Option<(HitEnclosure<F>, usize)> {
+        let crossings = self.exact_crossings::<A, F>(line, true)?;
+        let Some((at, here)) = crossings.places().next() else { return Some((HitEnclosure::Misses, 0)) };
+        let hit = HitEnclosure::Hits(F::narrow(at.into()));
+        if let [(_, face)] = here {
+            return Some((hit, *face));
+        }
+        // Of several faces at the same place, `face_along` chooses this one.
+        let rank = |(crossing, face): &(Crossing, usize)| {
+            (self.is_closed() && !crossing.enters, self.order[*face], *face)
+        };
+        let mut places: Vec<_> = here.iter().map(rank).collect();
+        places.sort_unstable();
+        let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
+        for (_, _, face) in &places {
+            let is_hidden = self.is_certainly_hidden::<A, f64>(*face, &coarse, at.coarse(), None);
+            match is_hidden
+                .or_else(|| self.is_certainly_hidden::<A, F>(*face, line, F::narrow(at.into()), None))
+            {
+                Some(true) => {}
+                Some(false) => return Some((hit, *face)),
+                None => return Some((HitEnclosure::Doubtful(F::narrow(at.into()).low), *face)),
+            }
+        }
+        let first = places.into_iter().min_by_key(|(_, order, _)| *order);
+        Some((hit, first.map_or(0, |(_, _, face)| face)))
+    }
+
+    /// Returns what is proven about each of a line's hits with t > 0, and the hit faces, like
+    /// [`all_along`](Self::all_along); `None` if the line's numbers are no fractions. At an edge or a corner of a closed
+    /// mesh, a line that crosses the surface does so once. It is open whether one that touches it does.
+    pub(super) fn all_exactly<A: Bounded, F: Precise>(
+        &self,
+        line: &Line<Interval<F>>,
+    ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
+        let crossings = self.exact_crossings::<A, F>(line, false)?;
+        let mut all = Vec::new();
+        for (at, here) in crossings.places() {
+            let at = F::narrow(at.into());
+            let beside = here.iter().filter(|(crossing, _)| crossing.is_beside);
+            let net: i32 = beside.map(|(crossing, _)| if crossing.enters { 1 } else { -1 }).sum();
+            let is_bounding = |crossing: &Crossing| !self.is_closed() || crossing.enters == (net > 0);
+            let chosen = here.iter().filter(|(crossing, _)| is_bounding(crossing));
+            let chosen = chosen.map(|(_, face)| *face).min_by_key(|face| self.order[*face]);
+            match chosen.filter(|_| net != 0 || !self.is_closed()) {
+                Some(face) => all.push((HitEnclosure::Hits(at), face)),
+                None => {
+                    all.push((HitEnclosure::Doubtful(at.low), here[0].1));
+                    break;
+                }
+            }
+        }
+        Some(all)
+    }
+}

@@ -1,0 +1,318 @@
+//! Appearances of faces as given by a mesh's file.
+
+use super::read::{Finish, Map};
+use super::surface::Surface;
+use crate::uv;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{Scalar, constants, per_axis};
+use tabray_world::body::Warning;
+use tabray_world::certify::Precise;
+use tabray_world::material::{Look, Material, Rgb};
+use tabray_world::patch::Patch;
+use tabray_world::shader::{LookBounds, Shader};
+use tabray_world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
+
+/// The materials, the images and the colours of a mesh's file.
+///
+/// As for [`Painted`](super::Painted), the point alone determines the face.
+pub struct Finished {
+    surface: Arc<Surface>,
+    has_images: bool,
+    bends: bool,
+    cuts_out: bool,
+}
+
+/// A point of a face.
+struct Spot<'s> {
+    face: usize,
+    finish: Option<&'s Finish>,
+    corners: [DVec3; 3],
+    at: DVec3,
+}
+
+impl Spot<'_> {
+    /// Returns the texture coordinates at a point of the face's plane.
+    fn uv(&self, [a, b, c]: [DVec2; 3], at: DVec3) -> DVec2 {
+        let weights = uv::on_triangle(self.corners, at);
+        a + weights.x * (b - a) + weights.y * (c - a)
+    }
+}
+
+impl Finished {
+    /// Makes the shader of a surface with the materials of its file.
+    pub fn new(surface: Arc<Surface>) -> Self {
+        let any = |is: fn(&Finish) -> bool| surface.finishes.iter().flatten().any(is);
+        let has_images = any(|finish| finish.maps().next().is_some());
+        let bends = any(|finish| finish.normals.is_some());
+        let is_cut = |slot: &u16| surface.finish(*slot).is_some_and(|finish| finish.mask.is_some());
+        let cuts_out = any(|finish| finish.mask.is_some()) && surface.slots.iter().any(is_cut);
+        Self { surface, has_images, bends, cuts_out }
+    }
+
+    fn spot(&self, at: DVec3) -> Spot<'_> {
+        let face = self.surface.face_at(at);
+        Spot { face, finish: self.finish(face), corners: self.surface.corners(face), at }
+    }
+
+    /// Returns the material of a face in the file.
+    fn finish(&self, face: usize) -> Option<&Finish> {
+        self.surface.finish(*self.surface.slots.get(face)?)
+    }
+
+    /// Returns the position of a spot in an image, and the extent of a patch there, both in texels.
+    fn place(&self, spot: &Spot, map: &Map, patch: Option<Patch>) -> Option<[DVec2; 2]> {
+        let corners = self.surface.uv.at(spot.face)?.map(|[u, v]| DVec2::new(u.into(), v.into()));
+        let size = DVec2::from(map.texture.size().map(f64::from));
+        let middle = spot.uv(corners, spot.at);
+        let reach = |side: DVec3| (spot.uv(corners, spot.at + side) - middle).abs();
+        let extent = patch.map_or(DVec2::ZERO, |patch| reach(patch.sides[0]) + reach(patch.sides[1]));
+        let place = (middle * map.scale + map.offset) * size;
+        place.is_finite().then_some([place, (extent * map.scale).abs() * size])
+    }
+
+    /// Returns the colour of an image at a spot, or white without an image.
+    fn light(&self, spot: &Spot, map: Option<&Map>, patch: Option<Patch>) -> Rgb {
+        let Some(map) = map else { return Rgb::ONE };
+        let Some([place, extent]) = self.place(spot, map, patch) else { return Rgb::ONE };
+        if extent.max_element() > 1.0 {
+            return map.texture.mean_repeated(place - 0.5 * extent, place + 0.5 * extent);
+        }
+        map.texture.blended(place, |column, row| map.texture.texel(column, row))
+    }
+
+    /// Returns the corner colours of a face, blended at a spot, or white if it has none.
+    fn tint(&self, spot: &Spot) -> Rgb {
+        let Some(colours) = self.surface.colours.at(spot.face) else { return Rgb::ONE };
+        let [a, b, c] = colours.map(|colour| Rgb::from(colour.map(f64::from)));
+        let weights = uv::on_triangle(spot.corners, spot.at).clamp(DVec2::ZERO, DVec2::ONE);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        (a + weights.x * (b - a) + weights.y * (c - a)).clamp(low, high)
+    }
+
+    fn colour(&self, spot: &Spot, finish: &Finish, patch: Option<Patch>) -> Rgb {
+        finish.colour * self.light(spot, finish.colours.as_ref(), patch) * self.tint(spot)
+    }
+
+    /// Bounds the channels of all corner colours.
+    fn brightest_tint(&self) -> Rgb {
+        let colours = &self.surface.colours.values;
+        let most = colours.iter().flatten().fold(0.0_f32, |most, channel| most.max(*channel));
+        if colours.is_empty() { Rgb::ONE } else { Rgb::splat(most.max(1.0).into()) }
+    }
+
+    /// Bounds the appearances of all faces. The mesh itself has the material `own`.
+    fn most(&self, own: &Material) -> Look {
+        let tint = self.brightest_tint();
+        let plain = Look {
+            ambient: own.ambient.abs() * tint,
+            diffuse: own.diffuse.abs() * tint,
+            specular: own.specular.abs(),
+        };
+        let brightest = |map: Option<&Map>| map.map_or(1.0, |map| map.texture.brightest().max(1.0));
+        self.surface.finishes.iter().flatten().fold(plain, |most, finish| {
+            let colour = finish.colour * brightest(finish.colours.as_ref()) * tint;
+            let emission = finish.emission * brightest(finish.emissions.as_ref());
+            Look {
+                ambient: most.ambient.max(own.ambient.abs() * colour + emission),
+                diffuse: most.diffuse.max(colour * (1.0 - finish.metal)),
+                specular: most.specular.max(colour * finish.metal + finish.specular),
+            }
+        })
+    }
+
+    /// Returns the material of the mesh, `own`, with the shininess and the transparency that the materials of all faces
+    /// share. Returns a warning if these materials differ, or `own` is of another kind.
+    pub fn material(&self, own: &Material) -> (Option<Material>, Option<Warning>) {
+        let surface = &self.surface;
+        let of = |slot: u16| surface.finish(slot).map_or([own.shininess, own.transparency], Finish::gloss);
+        let mut used = vec![false; surface.materials.len() + 1];
+        surface.slots.iter().for_each(|slot| used[usize::from(*slot)] = true);
+        used[0] |= surface.slots.is_empty();
+        let used: Vec<_> = (0..used.len()).filter(|slot| used[*slot]).map(|slot| slot as u16).collect();
+        let [shininess, transparency] = of(used[0]);
+        let is_plain = own.interface.is_none();
+        if is_plain && used.iter().all(|slot| of(*slot) == [shininess, transparency]) {
+            let is_own = [shininess, transparency] == [own.shininess, own.transparency];
+            return ((!is_own).then(|| Material { shininess, transparency, ..own.clone() }), None);
+        }
+        let unlike = used.iter().filter(|slot| of(**slot) != [own.shininess, own.transparency]);
+        let unlike: Vec<_> =
+            unlike.filter_map(|slot| surface.materials.get(usize::from(*slot).checked_sub(1)?)).collect();
+        let warning = (!unlike.is_empty()).then(|| Warning {
+            attribute: "materials",
+            message: format!(
+                "ignores the shininess and transparency of its file's materials: {}",
+                super::painted::first_of(&unlike)
+            ),
+            help: "they are those of the mesh's own material, as only colours can differ from face to face: make these faces a \
+                   mesh of their own"
+                .to_owned(),
+        });
+        (None, warning)
+    }
+
+    /// Encloses the colours of an image for these bounds of barycentric weights on a face.
+    fn enclosed<F: Precise>(
+        &self,
+        face: usize,
+        weights: [Interval; 2],
+        map: Option<&Map>,
+    ) -> [Interval<F>; 3] {
+        let white = [Interval::constant(1.0); 3];
+        let (Some(map), Some(corners)) = (map, self.surface.uv.at(face)) else { return white };
+        let n = Interval::<f64>::constant;
+        let texels = |axis: usize| {
+            let [a, b, c] = corners.map(|uv| n(uv[axis].into()));
+            let at = a + weights[0] * (b - a) + weights[1] * (c - a);
+            let size = map.texture.size()[axis];
+            let Interval { low, high } =
+                (at * n(map.scale[axis]) + n(map.offset[axis])) * n(size.into()) - n(0.5);
+            // Blended colours lie between those of the surrounding texels.
+            let (low, high) = (low.floor() as i64, (high.floor() as i64).saturating_add(1));
+            (low..=high).map(move |at| at.rem_euclid(i64::from(size.max(1))) as u32)
+        };
+        map.texture.enclose(texels(0), texels(1))
+    }
+}
+
+impl Finish {
+    fn gloss(&self) -> [f64; 2] {
+        [self.shininess, self.transparency]
+    }
+}
+
+impl Shader for Finished {
+    fn sees(&self) -> ShaderInputs {
+        let inputs = if self.bends { ShaderInputs::NORMAL } else { ShaderInputs::POSITION };
+        ShaderInputs { patch: self.has_images, ..inputs }
+    }
+
+    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        let spot = self.spot(at.position);
+        let Some(finish) = spot.finish else { return material.ambient * self.tint(&spot) };
+        let emission = finish.emission * self.light(&spot, finish.emissions.as_ref(), at.patch);
+        material.ambient * self.colour(&spot, finish, at.patch) + emission
+    }
+
+    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        let spot = self.spot(at.position);
+        let Some(finish) = spot.finish else { return material.diffuse * self.tint(&spot) };
+        self.colour(&spot, finish, at.patch) * (1.0 - finish.metal)
+    }
+
+    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
+        let spot = self.spot(at.position);
+        let Some(finish) = spot.finish else { return material.specular };
+        let mirrored = if finish.metal == 0.0 { Rgb::ZERO } else { self.colour(&spot, finish, at.patch) };
+        mirrored * finish.metal + finish.specular
+    }
+
+    fn bends(&self) -> bool {
+        self.bends
+    }
+
+    /// Applies the normal map along the directions of the texture coordinates on the face.
+    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+        let spot = self.spot(at.position);
+        let Some((map, strength)) = spot.finish.and_then(|finish| finish.normals.as_ref()) else {
+            return at.normal;
+        };
+        let along = self.surface.uv.at(spot.face).and_then(|uv| along(spot.corners, uv));
+        let (Some([along_u, along_v]), Some([place, _])) = (along, self.place(&spot, map, None)) else {
+            return at.normal;
+        };
+        let DVec3 { x, y, z } =
+            2.0 * map.texture.blended(place, |column, row| map.texture.numbers(column, row)) - 1.0;
+        let upright = |along: DVec3| (along - along.dot(at.normal) * at.normal).normalize_or_zero();
+        let bent = *strength * (x * upright(along_u) + y * upright(along_v)) + z.max(0.0) * at.normal;
+        bent.try_normalize().unwrap_or(at.normal)
+    }
+
+    fn cuts_out(&self) -> bool {
+        self.cuts_out
+    }
+
+    fn is_cut_out(&self, at: &SurfacePoint) -> bool {
+        let spot = self.spot(at.position);
+        let mask = spot.finish.and_then(|finish| finish.mask.as_ref());
+        mask.is_some_and(|mask| mask.cuts_out(|map| self.place(&spot, map, None).map(|[place, _]| place)))
+    }
+
+    fn tile(&self, at: &SurfacePoint) -> DVec2 {
+        let spot = self.spot(at.position);
+        let slot = self.surface.slots.get(spot.face).copied().unwrap_or(0);
+        let map = spot.finish.and_then(|finish| finish.colours.as_ref());
+        let place =
+            map.and_then(|map| self.place(&spot, map, None)).map_or(DVec2::ZERO, |[place, _]| place.floor());
+        // Multiples of 2^32, which no image reaches, tell materials apart.
+        place + DVec2::new(f64::from(slot) * 4_294_967_296.0, 0.0)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
+        if self.bends {
+            return None;
+        }
+        let n = Interval::<F>::constant;
+        let coarse = at.position.map(Interval::coarse);
+        let face = self.surface.face_at(DVec3::from(coarse.map(Interval::middle)));
+        if !self.surface.is_alone(coarse, |other| other == face) {
+            let Look { ambient, diffuse, specular } = self.most(material);
+            // The mesh's own ambient and specular reflectivities may be negative.
+            let within = |most: Rgb, own: Rgb| {
+                per_axis(|channel| {
+                    n(0.0).hull(n(most[channel])).hull(n(own[channel] * self.brightest_tint()[channel]))
+                })
+            };
+            return Some(LookBounds {
+                ambient: within(ambient, material.ambient),
+                diffuse: within(diffuse, material.diffuse),
+                specular: within(specular, material.specular),
+            });
+        }
+        let weights = uv::bounds_on_triangle(self.surface.corners(face), coarse);
+        let tint = match self.surface.colours.at(face) {
+            None => [n(1.0); 3],
+            Some(colours) => per_axis(|channel| {
+                let [a, b, c] = colours.map(|colour| n(colour[channel].into()));
+                let [second, third] = weights.map(Interval::<F>::from_f64);
+                a + second * (b - a) + third * (c - a)
+            }),
+        };
+        let times = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
+            per_axis(|channel| one[channel] * other[channel])
+        };
+        let own = LookBounds::from(material);
+        let Some(finish) = self.finish(face) else {
+            let [ambient, diffuse] = [own.ambient, own.diffuse].map(|colour| times(colour, tint));
+            return Some(LookBounds { ambient, diffuse, ..own });
+        };
+        let light = |map: &Option<Map>| self.enclosed::<F>(face, weights, map.as_ref());
+        let colour = times(times(constants(finish.colour), light(&finish.colours)), tint);
+        let emission = times(constants(finish.emission), light(&finish.emissions));
+        let ambient = times(own.ambient, colour);
+        Some(LookBounds {
+            ambient: per_axis(|channel| ambient[channel] + emission[channel]),
+            diffuse: colour.map(|channel| channel * n(1.0 - finish.metal)),
+            specular: per_axis(|channel| colour[channel] * n(finish.metal) + n(finish.specular[channel])),
+        })
+    }
+
+    /// Returns bounds of the appearances of all faces, unless the mesh's own diffuse colour is negative.
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        (material.diffuse.min_element() >= 0.0).then(|| self.most(material))
+    }
+}
+
+/// Returns the directions on a face in which u grows at constant v, and v at constant u.
+fn along([a, b, c]: [DVec3; 3], uv: [[f32; 2]; 3]) -> Option<[DVec3; 2]> {
+    let [from, to, other] = uv.map(|[u, v]| DVec2::new(u.into(), v.into()));
+    let (one, two) = (to - from, other - from);
+    let turn = one.perp_dot(two);
+    let (first, second) = (b - a, c - a);
+    let along_u = (first * two.y - second * one.y) * turn.signum();
+    let along_v = (second * one.x - first * two.x) * turn.signum();
+    (turn != 0.0).then_some(())?;
+    Some([along_u.try_normalize()?, along_v.try_normalize()?])
+}

@@ -1,0 +1,183 @@
+//! The materials of glTF.
+
+use super::buffers::{Buffers, data, unescaped};
+use super::json::{self, Gltf, Transform};
+use crate::mesh::read::finish::{Finish, Map, Mask};
+use crate::mesh::read::model::{MemoryBudget, Model, Remark};
+use crate::mesh::read::textures::{Textures, first_of};
+use glam::{DVec2, DVec3};
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::Arc;
+use tabray_world::material::Rgb;
+use tabray_world::text;
+use tabray_world::texture::{CUTOFF, Texture};
+
+/// The material extensions that are rendered, or do not change what is rendered.
+const SHOWN: [&str; 4] = [
+    "KHR_materials_emissive_strength",
+    "KHR_materials_transmission",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+];
+
+/// Sets the names of the model's materials and, if wanted, their appearances.
+pub fn furnish(
+    model: &mut Model,
+    json: &Gltf,
+    buffers: &Buffers,
+    folder: &Path,
+    budget: &MemoryBudget,
+) -> Result<(), String> {
+    let name = |(index, material): (usize, &json::Material)| {
+        material.name.clone().unwrap_or_else(|| format!("material {index}"))
+    };
+    model.materials = json.materials.iter().enumerate().map(name).collect();
+    if model.slots.iter().all(|slot| *slot == 0) {
+        (model.slots, model.materials) = Default::default();
+    }
+    if budget.wanted.materials.is_none() || model.materials.is_empty() {
+        return Ok(());
+    }
+    let mut looks = Looks {
+        json,
+        buffers,
+        textures: Textures::new(folder, budget),
+        unseen: BTreeSet::new(),
+        images: Vec::new(),
+    };
+    looks.images.resize(json.images.len(), None);
+    for material in &json.materials {
+        let finish = looks.finish(material)?;
+        model.finishes.push(Some(finish));
+    }
+    let Looks { textures, unseen, .. } = looks;
+    if !unseen.is_empty() {
+        let unseen: Vec<_> = unseen.into_iter().collect();
+        model.remarks.push(Remark {
+            message: format!("has materials with properties that are not shown: {}", first_of(&unseen)),
+            help: "the rest of the materials is shown",
+        });
+    }
+    textures.finish(model);
+    Ok(())
+}
+
+struct Looks<'f> {
+    json: &'f Gltf,
+    buffers: &'f Buffers<'f>,
+    textures: Textures<'f>,
+    /// The names of properties that are not rendered.
+    unseen: BTreeSet<String>,
+    /// The images that were read, or `None` inside for those that cannot be.
+    images: Vec<Option<Option<Arc<Texture>>>>,
+}
+
+impl Looks<'_> {
+    fn finish(&mut self, material: &json::Material) -> Result<Finish, String> {
+        let json::Pbr {
+            base_color_factor: [red, green, blue, alpha],
+            base_color_texture,
+            metallic_factor,
+            roughness_factor,
+            metallic_roughness_texture,
+        } = &material.pbr_metallic_roughness;
+        let mut hide = |is_hidden: bool, what: &str| {
+            if is_hidden {
+                self.unseen.insert(what.to_owned());
+            }
+        };
+        let mode = material.alpha_mode.as_deref().unwrap_or("OPAQUE");
+        hide(mode == "BLEND" && base_color_texture.is_some(), "the alpha of images");
+        hide(material.occlusion_texture.is_some(), "occlusionTexture");
+        let extension = |name: &str, number: &str| material.extensions.get(name)?.get(number)?.as_f64();
+        for name in material.extensions.keys().filter(|name| !SHOWN.contains(&&name[..])) {
+            hide(true, &text::abridged(name));
+        }
+        let colour =
+            |red: f64, green: f64, blue: f64| Rgb::new(red, green, blue).clamp(Rgb::ZERO, Rgb::splat(1e6));
+        let strength = extension("KHR_materials_emissive_strength", "emissiveStrength").unwrap_or(1.0);
+        let [r, g, b] = material.emissive_factor.map(|channel| channel * strength);
+        let passed = extension("KHR_materials_transmission", "transmissionFactor").unwrap_or(0.0);
+        let covered = if mode == "BLEND" { alpha.clamp(0.0, 1.0) } else { 1.0 };
+        let mut finish = Finish {
+            colour: colour(*red, *green, *blue),
+            emission: colour(r, g, b),
+            transparency: 1.0 - covered * (1.0 - passed.clamp(0.0, 1.0)),
+            colours: self.map(base_color_texture.as_ref())?,
+            emissions: self.map(material.emissive_texture.as_ref())?,
+            ..Finish::default()
+        };
+        let normals = self.map(material.normal_texture.as_ref())?;
+        let slopes = material.normal_texture.as_ref().and_then(|normals| normals.scale).unwrap_or(1.0);
+        finish.normals = normals.map(|map| (map, slopes));
+        if mode == "MASK" {
+            let map = finish.colours.clone().filter(|map| map.texture.has_alpha());
+            finish.mask = Mask::new(map, material.alpha_cutoff.unwrap_or(CUTOFF) / alpha);
+        }
+        let (mut metal, mut roughness) = (*metallic_factor, *roughness_factor);
+        if let Some(map) = self.map(metallic_roughness_texture.as_ref())? {
+            let DVec3 { y, z, .. } = mean(&map.texture);
+            (metal, roughness) = (metal * z, roughness * y);
+            self.unseen.insert("metallicRoughnessTexture (its mean is)".to_owned());
+        }
+        finish.forge(metal, roughness);
+        Ok(finish)
+    }
+
+    /// Returns an image as a material uses it, or `None` if it is missing or cannot be read.
+    fn map(&mut self, info: Option<&json::TextureInfo>) -> Result<Option<Map>, String> {
+        let Some(info) = info else { return Ok(None) };
+        let missing = |what: &str, index: usize| format!("there is no {what} {index}");
+        let texture = self.json.textures.get(info.index).ok_or_else(|| missing("texture", info.index))?;
+        let other = || texture.extensions.values().find_map(|extension| extension.get("source")?.as_u64());
+        let Some(source) = texture.source.or_else(|| other().and_then(|source| usize::try_from(source).ok()))
+        else {
+            self.unseen.insert("textures without an image".to_owned());
+            return Ok(None);
+        };
+        let plain = Transform::default();
+        let Transform { offset, scale, rotation, tex_coord } =
+            info.extensions.transform.as_ref().unwrap_or(&plain);
+        if tex_coord.unwrap_or(info.tex_coord) != 0 {
+            self.unseen.insert("images by TEXCOORD_1".to_owned());
+            return Ok(None);
+        }
+        if *rotation != 0.0 {
+            self.unseen.insert("the rotation of images".to_owned());
+        }
+        let image = self.json.images.get(source).ok_or_else(|| missing("image", source))?;
+        let texture = match &self.images[source] {
+            Some(known) => known.clone(),
+            None => {
+                let texture = self.texture(image, source)?;
+                self.images[source] = Some(texture.clone());
+                texture
+            }
+        };
+        let (scale, offset) = (DVec2::from(scale.unwrap_or([1.0; 2])), DVec2::from(*offset));
+        // In glTF, v grows downward.
+        let offset = DVec2::new(offset.x, 1.0 - scale.y - offset.y);
+        Ok(texture.map(|texture| Map { texture, scale, offset }))
+    }
+
+    fn texture(&mut self, image: &json::Image, index: usize) -> Result<Option<Arc<Texture>>, String> {
+        let place = format!("image {index}");
+        let name = image.name.as_deref().unwrap_or(&place);
+        Ok(match (&image.uri, image.buffer_view) {
+            (Some(uri), _) => match data(uri) {
+                Some(bytes) => self.textures.within(&bytes?, name, &place),
+                None => self.textures.named(&unescaped(uri), &place),
+            },
+            (None, Some(view)) => self.textures.within(self.buffers.view(view, 0)?, name, &place),
+            (None, None) => None,
+        })
+    }
+}
+
+/// Returns the mean of an image's texels.
+fn mean(texture: &Texture) -> DVec3 {
+    let [width, height] = texture.size();
+    let texels = (0..height).flat_map(|row| (0..width).map(move |column| texture.numbers(column, row)));
+    texels.sum::<DVec3>() / (f64::from(width) * f64::from(height)).max(1.0)
+}

@@ -1,0 +1,325 @@
+//! Material files of OBJ.
+
+use super::blocks::{self, Words, words};
+use super::finish::{Finish, Map, Mask};
+use super::model::{MemoryBudget, Model, Remark};
+use super::textures::{Textures, first_of};
+use glam::DVec2;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+use tabray_world::files::held::SceneFile;
+use tabray_world::material::Rgb;
+use tabray_world::text;
+use tabray_world::texture::{CUTOFF, Texture};
+
+/// The maximum length of a material file, in bytes.
+const LONGEST: u64 = 1 << 26;
+
+/// The keywords of a material that are used, or that do not affect its appearance here: ambient light is the scene's.
+const KNOWN: [&str; 21] = [
+    "newmtl",
+    "illum",
+    "Ka",
+    "Kd",
+    "Ks",
+    "Ke",
+    "Ns",
+    "Ni",
+    "d",
+    "Tr",
+    "Pr",
+    "Pm",
+    "map_Ka",
+    "map_Kd",
+    "map_Ke",
+    "map_d",
+    "map_Bump",
+    "map_bump",
+    "bump",
+    "norm",
+    "sharpness",
+];
+
+/// The contents of material files.
+#[derive(Default)]
+struct Found {
+    finishes: BTreeMap<String, Finish>,
+    /// The keywords that are not rendered.
+    unseen: BTreeSet<String>,
+    /// The places of errors.
+    wrong: Vec<String>,
+}
+
+/// Reads the material files that an OBJ names in the given lines, and sets the appearances of the model's materials.
+pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path, budget: &MemoryBudget) {
+    let mut found = Found::default();
+    let (mut textures, mut missing) = (Textures::new(folder, budget), Vec::new());
+    for (names, line) in libraries {
+        for name in named(names, folder) {
+            // A file that is not at its path is looked for beside the model.
+            let (whole, beside) =
+                (folder.join(&name), folder.join(Path::new(&name).file_name().unwrap_or_default()));
+            let path = if !whole.is_file() && beside.is_file() { beside } else { whole };
+            model.files.push(path.clone());
+            match text_of(&path) {
+                Ok(bytes) => {
+                    textures.folder = path.parent().unwrap_or(folder).to_owned();
+                    found.read(&bytes, &name, &mut textures);
+                }
+                Err(reason) => missing.push(format!("`{}` (line {line}: {reason})", text::abridged(&name))),
+            }
+        }
+    }
+    let unknown: Vec<_> = model.materials.iter().filter(|name| !found.finishes.contains_key(*name)).collect();
+    let unknown: Vec<_> = unknown.iter().map(|name| format!("`{}`", text::abridged(name))).collect();
+    model.finishes = model.materials.iter().map(|name| found.finishes.get(name).cloned()).collect();
+    let mut tell = |all: &[String], what: &str, help| {
+        if !all.is_empty() {
+            model.remarks.push(Remark { message: format!("{what}: {}", first_of(all)), help });
+        }
+    };
+    tell(&missing, "names material files that cannot be read", "their materials are that of the mesh");
+    if missing.is_empty() {
+        tell(
+            &unknown,
+            "names materials that its material files do not have",
+            "their faces have the material of the mesh",
+        );
+    }
+    tell(&found.wrong, "has material files with lines that are not understood", "these lines are left out");
+    let unseen: Vec<_> = found.unseen.into_iter().collect();
+    tell(&unseen, "has materials with properties that are not shown", "the rest of the materials is shown");
+    textures.finish(model);
+}
+
+/// The maximum number of words in a name with blanks.
+const MOST_WORDS: usize = 16;
+
+/// Returns the names that follow `mtllib`. Several words form one name if a file with that name exists.
+fn named(names: &[u8], folder: &Path) -> Vec<String> {
+    let words = words(names)
+        .take_while(|word| *word != b"#")
+        .map(|word| String::from_utf8_lossy(word).replace('\\', "/"));
+    let words: Vec<_> = words.collect();
+    let (mut rest, mut found) = (&words[..], Vec::new());
+    while !rest.is_empty() {
+        let joined = (2..=rest.len().min(MOST_WORDS)).rev().map(|count| (count, rest[..count].join(" ")));
+        let (count, name) =
+            joined.into_iter().find(|(_, name)| folder.join(name).is_file()).unwrap_or((1, rest[0].clone()));
+        rest = &rest[count..];
+        found.push(name);
+    }
+    found
+}
+
+fn text_of(path: &Path) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let file = SceneFile::open(path);
+    let read = file.and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
+    match read {
+        Ok(_) if bytes.len() as u64 > LONGEST => Err("it is longer than 64 MiB".to_owned()),
+        Ok(_) => {
+            blocks::end_lines(&mut bytes);
+            Ok(bytes)
+        }
+        Err(error) => Err(match text::nearest_file(path) {
+            Some(near) if !path.exists() => format!("it does not exist, but `{near}` does"),
+            _ => text::reason(&error),
+        }),
+    }
+}
+
+/// The properties of a material as written. Their meaning depends on each other.
+#[derive(Default)]
+struct Raw {
+    finish: Finish,
+    illumination: f64,
+    mirror: Option<Rgb>,
+    shininess: f64,
+    roughness: Option<f64>,
+    metal: f64,
+    has_index: bool,
+}
+
+impl Found {
+    /// Reads the text of a material file with this name.
+    fn read(&mut self, bytes: &[u8], file: &str, textures: &mut Textures) {
+        let mut current: Option<(String, Raw)> = None;
+        for (index, line) in blocks::lines(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).enumerate() {
+            let mut words = words(line);
+            let Some(keyword) = words.next().and_then(|word| str::from_utf8(word).ok()) else { continue };
+            if keyword.starts_with('#') {
+                continue;
+            }
+            let place = format!("line {} of `{}`", index + 1, text::abridged(file));
+            if keyword == "newmtl" {
+                self.add(current.take());
+                current = Some((material(line), Raw::default()));
+            } else if let Some((_, raw)) = &mut current {
+                if !KNOWN.contains(&keyword) {
+                    // Other words may be names from other programs.
+                    self.unseen.insert(text::abridged(keyword).into_owned());
+                } else if raw.read(keyword, words, &place, textures, &mut self.unseen).is_none() {
+                    self.wrong.push(place);
+                }
+            }
+        }
+        self.add(current);
+    }
+
+    /// Adds a material. Of several with the same name, the first counts.
+    fn add(&mut self, material: Option<(String, Raw)>) {
+        let Some((name, raw)) = material else { return };
+        let finish = raw.finish(&mut self.unseen);
+        self.finishes.entry(name).or_insert(finish);
+    }
+}
+
+impl Raw {
+    /// Reads the values of a keyword, or returns `None` if they make no sense.
+    fn read(
+        &mut self,
+        keyword: &str,
+        mut words: Words,
+        place: &str,
+        textures: &mut Textures,
+        unseen: &mut BTreeSet<String>,
+    ) -> Option<()> {
+        let finish = &mut self.finish;
+        match keyword {
+            "Kd" => finish.colour = colour(words)?,
+            "Ks" => self.mirror = Some(colour(words)?),
+            "Ke" => finish.emission = colour(words)?,
+            "Ns" => self.shininess = number(&mut words)?.clamp(0.0, 1e6),
+            "Ni" => self.has_index = number(&mut words)? != 1.0,
+            "illum" => self.illumination = number(&mut words)?,
+            "Pr" => self.roughness = Some(number(&mut words)?),
+            "Pm" => self.metal = number(&mut words)?,
+            "d" => {
+                if words.clone().next() == Some(b"-halo") {
+                    words.next();
+                }
+                finish.transparency = 1.0 - number(&mut words)?.clamp(0.0, 1.0);
+            }
+            "Tr" => finish.transparency = number(&mut words)?.clamp(0.0, 1.0),
+            "map_Kd" => finish.colours = map(words, place, textures)?.map(|(map, _)| map),
+            "map_Ke" => finish.emissions = map(words, place, textures)?.map(|(map, _)| map),
+            "map_d" => {
+                finish.mask = map(words, place, textures)?.and_then(|(map, _)| Mask::new(Some(map), CUTOFF));
+            }
+            "map_Bump" | "map_bump" | "bump" | "norm" => {
+                let bumps = map(words, place, textures)?;
+                // Programs also write normal maps where the format expects heights.
+                if bumps.as_ref().is_some_and(|(map, _)| keyword != "norm" && is_grey(&map.texture)) {
+                    unseen.insert(format!("{keyword} (an image of heights)"));
+                } else {
+                    finish.normals = bumps;
+                }
+            }
+            _ => {}
+        }
+        Some(())
+    }
+
+    /// Returns the appearance of the material, and adds properties that are not rendered to `unseen`.
+    fn finish(self, unseen: &mut BTreeSet<String>) -> Finish {
+        let Self { mut finish, illumination, mirror, shininess, roughness, metal, has_index } = self;
+        if finish.colours.is_some() && finish.colour == Rgb::ZERO {
+            // Some programs write black if an image gives the colours.
+            finish.colour = Rgb::ONE;
+        }
+        if finish.emissions.is_some() && finish.emission == Rgb::ZERO {
+            finish.emission = Rgb::ONE;
+        }
+        finish.forge(metal, roughness.unwrap_or(1.0));
+        let mut hide = |is_hidden: bool, word: &str| {
+            if is_hidden {
+                unseen.insert(word.to_owned());
+            }
+        };
+        match mirror {
+            // Illumination models from 3 on have mirror images.
+            Some(mirror) if illumination >= 3.0 => (finish.specular, finish.shininess) = (mirror, shininess),
+            _ => hide(
+                mirror.is_some_and(|mirror| mirror != Rgb::ZERO),
+                "Ks and Ns (highlights without mirror images)",
+            ),
+        }
+        hide(has_index && finish.transparency > 0.0, "Ni");
+        finish
+    }
+}
+
+fn number(words: &mut Words) -> Option<f64> {
+    let number: f64 = str::from_utf8(words.next()?).ok()?.parse().ok()?;
+    number.is_finite().then_some(number)
+}
+
+/// Reads a colour of three numbers, or one number for all channels.
+fn colour(mut words: Words) -> Option<Rgb> {
+    let red = number(&mut words)?;
+    let colour = match words.clone().next() {
+        None => Rgb::splat(red),
+        Some(_) => Rgb::new(red, number(&mut words)?, number(&mut words)?),
+    };
+    Some(colour.clamp(Rgb::ZERO, Rgb::splat(1e6)))
+}
+
+/// Reads the options and the name of an image, and the factor of its bumps. Returns `None` without a name, and
+/// `Some(None)` for an image that cannot be read.
+fn map(mut words: Words, place: &str, textures: &mut Textures) -> Option<Option<(Map, f64)>> {
+    let (mut scale, mut offset, mut bumps) = (DVec2::ONE, DVec2::ZERO, 1.0);
+    loop {
+        let mut ahead = words.clone();
+        let option = ahead.next()?;
+        let pair = |words: &mut Words, or: DVec2| {
+            let first = number(words)?;
+            let mut rest = [None; 2];
+            for part in &mut rest {
+                let mut next = words.clone();
+                *part = number(&mut next).filter(|_| next.clone().next().is_some());
+                *words = if part.is_some() { next } else { break };
+            }
+            Some(DVec2::new(first, rest[0].unwrap_or(or.y)))
+        };
+        match option {
+            b"-s" => scale = pair(&mut ahead, DVec2::ONE)?,
+            b"-o" => offset = pair(&mut ahead, DVec2::ZERO)?,
+            b"-t" => _ = pair(&mut ahead, DVec2::ZERO)?,
+            b"-bm" => bumps = number(&mut ahead)?,
+            b"-mm" => _ = (number(&mut ahead)?, number(&mut ahead)?),
+            b"-blendu" | b"-blendv" | b"-boost" | b"-texres" | b"-clamp" | b"-imfchan" | b"-type"
+            | b"-cc" | b"-colorspace" => {
+                ahead.next()?;
+            }
+            _ => break,
+        }
+        words = ahead;
+    }
+    // A name may contain blanks and a `#`. A `#` between blanks begins a comment.
+    let mut after = blocks::words(words.rest);
+    let is_comment = after.find(|word| *word == b"#").is_some();
+    let end = if is_comment { words.rest.len() - after.rest.len() - 1 } else { words.rest.len() };
+    let name = String::from_utf8_lossy(words.rest[..end].trim_ascii());
+    let texture = textures.named(&name, place);
+    Some(texture.map(|texture| (Map { texture, scale, offset }, bumps)))
+}
+
+/// Tells whether an image is grey.
+fn is_grey(texture: &Arc<Texture>) -> bool {
+    let [width, height] = texture.size();
+    let mut texels = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
+    texels.all(|[column, row]| {
+        let texel = texture.numbers(column, row);
+        texel.x == texel.y && texel.y == texel.z
+    })
+}
+
+/// Returns the name that follows `usemtl` or `newmtl`. The name may contain a `#`, as in `Material #25`. A `#` between
+/// blanks begins a comment.
+pub(super) fn material(line: &[u8]) -> String {
+    let name = words(line).skip(1).take_while(|word| *word != b"#");
+    name.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,175 @@
+//! Proofs of the hits of a parametric surface.
+
+use super::patch::{Patches, PatchesIn, Rectangle};
+use super::search::{Found, Search, meet};
+use super::shape::ParametricShape;
+use super::tree::halves;
+use f256::f256;
+use glam::DVec3;
+use std::cell::Cell;
+use tabray_exact::affine::Affine;
+use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::{Float, Fraction, Interval};
+use tabray_exact::scalar::{cross, dot};
+use tabray_world::certify::{
+    Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precision, Premise, ProofMethods, coarse,
+};
+use tabray_world::geometry::ray::Ray;
+use tabray_world::geometry::sight::{Line, Sight};
+use tabray_world::packets::shape::HitQueries;
+
+/// The maximum number of parts in which normals are enclosed.
+const MOST_NORMALS: usize = 256;
+
+impl ParametricShape {
+    fn proven_hit<F: Float>(&self, line: &Line<Interval<F>>, leaves: bool) -> (HitEnclosure<F>, usize)
+    where
+        dyn Patches: PatchesIn<F>,
+    {
+        // The only solution that may have t = 0 is the start of the line. Of several, any may be the start.
+        let start: Cell<Option<Rectangle<F>>> = Cell::new(None);
+        let is_left_out = |t: Interval<F>, place: &Rectangle<F>, is_certain: bool| {
+            if !(leaves && is_certain && t.has_zero()) {
+                return false;
+            }
+            let known = start.get().unwrap_or(*place);
+            start.set(Some(known));
+            meet(&known, place)
+        };
+        match (Search { shape: self, line, is_left_out: &is_left_out }).first() {
+            Found { hit: None, undecided: None, .. } => (HitEnclosure::Misses, 0),
+            Found { hit: Some(hit), undecided, .. } if undecided.is_none_or(|from| from > hit.t.high) => {
+                let at = if hit.is_edge { HitEnclosure::Edge(hit.t) } else { HitEnclosure::Hits(hit.t) };
+                (at, hit.leaf)
+            }
+            Found { hit, undecided, .. } => {
+                let from = undecided.unwrap_or(F::of(0.0));
+                (HitEnclosure::Doubtful(hit.map_or(from, |hit| from.min(hit.t.low))), 0)
+            }
+        }
+    }
+
+    /// Encloses the normals, of any length, at those points of a leaf and its margin that are in a box. Returns `None`
+    /// if that takes too many parts.
+    fn normals<F: Float>(&self, at: &[Interval<F>; 3], leaf: usize) -> Option<[Interval<F>; 3]>
+    where
+        dyn Patches: PatchesIn<F>,
+    {
+        let whole = self.tree.leaf(leaf).map(|side| {
+            let margin = 0.25 * side.width();
+            Interval { low: side.low - margin, high: side.high + margin }
+        });
+        let (mut waiting, mut left) = (vec![whole], MOST_NORMALS);
+        let mut all: Option<[Interval<F>; 3]> = None;
+        while let Some(part) = waiting.pop() {
+            let patch = PatchesIn::<F>::patch(&*self.patches, &part.map(Interval::from_f64));
+            let meets =
+                |axis: usize| patch.at[axis].low <= at[axis].high && at[axis].low <= patch.at[axis].high;
+            if !(0..3).all(meets) {
+                continue;
+            }
+            left = left.checked_sub(1)?;
+            let is_narrow = (0..2).all(|axis| part[axis].width() < whole[axis].width() / 4096.0);
+            if !is_narrow {
+                waiting.extend(halves(&*self.patches, part));
+                continue;
+            }
+            let normal = cross(patch.along[0], patch.along[1]);
+            all = Some(match all {
+                Some(known) => [0, 1, 2].map(|axis| known[axis].hull(normal[axis])),
+                None => normal,
+            });
+        }
+        all
+    }
+}
+
+/// Implements proofs in a precision.
+macro_rules! proofs {
+    ($F:ty) => {
+        impl HitProofs<$F> for ParametricShape {
+            fn first_hit(
+                &self,
+                line: &Line<Interval<$F>>,
+                leaves: Option<usize>,
+            ) -> (HitEnclosure<$F>, usize) {
+                self.proven_hit(line, leaves.is_some())
+            }
+
+            fn has_equation(&self, _part: usize) -> bool {
+                false
+            }
+
+            /// There is no equation. The value is unknown, and the slopes are components of a normal.
+            fn slope(&self, at: [Dual<Interval<$F>>; 3], part: usize) -> Dual<Interval<$F>> {
+                let normal = self.normals(&at.map(|axis| axis.value), part);
+                let along = |normal| dot(normal, at.map(|axis| axis.slope));
+                Dual { value: Interval::whole(), slope: normal.map_or(Interval::whole(), along) }
+            }
+        }
+    };
+}
+
+proofs!(f64);
+proofs!(f256);
+
+/// Fractions are rounded to 237 bits.
+impl HitProofs<Fraction> for ParametricShape {
+    fn first_hit(
+        &self,
+        line: &Line<Interval<Fraction>>,
+        leaves: Option<usize>,
+    ) -> (HitEnclosure<Fraction>, usize) {
+        let line = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
+        let (found, leaf) = HitProofs::<f256>::first_hit(self, &line, leaves);
+        let found = match found {
+            HitEnclosure::Misses => HitEnclosure::Misses,
+            HitEnclosure::Hits(at) => HitEnclosure::Hits(at.into()),
+            HitEnclosure::Edge(at) => HitEnclosure::Edge(at.into()),
+            HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(from.into()),
+        };
+        (found, leaf)
+    }
+
+    fn slope(&self, at: [Dual<Interval<Fraction>>; 3], part: usize) -> Dual<Interval<Fraction>> {
+        let wide = at.map(|Dual { value, slope }| Dual { value: value.wide(), slope: slope.wide() });
+        let Dual { value, slope } = HitProofs::<f256>::slope(self, wide, part);
+        Dual { value: value.into(), slope: slope.into() }
+    }
+}
+
+impl OverFootprint for ParametricShape {
+    fn hits(&self, line: &Line<Affine>, _leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
+        if let Some((from, _)) = coarse(line).clip(self.bounds.low, self.bounds.high) {
+            met(FootprintHit::Doubtful(from), 0);
+        }
+    }
+
+    fn slope(&self, _at: [Dual<Affine>; 3], _part: usize) -> Dual<Affine> {
+        Dual::fixed(Affine::WHOLE)
+    }
+}
+
+impl HitQueries for ParametricShape {
+    fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
+        self.is_near(at, error)
+    }
+
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
+        None
+    }
+
+    fn premises(&self, _of: &'static str, _each: &mut dyn FnMut(&'static str, Premise)) {}
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        match precision {
+            Precision::Double => HitProofs::<f64>::first_hit(self, &sight.line(), None).0.into(),
+            Precision::Octuple => HitProofs::<f256>::first_hit(self, &sight.line(), None).0.into(),
+        }
+    }
+
+    fn proven(&self) -> Option<&dyn ProofMethods> {
+        Some(self)
+    }
+}

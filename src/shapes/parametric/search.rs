@@ -1,0 +1,371 @@
+//! The first hit of a line and a parametric surface.
+
+use super::patch::{Patch, Patches, PatchesIn, Rectangle};
+use super::shape::ParametricShape;
+use super::tree::Flat;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use tabray_exact::double_double::power_of_two;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::Scalar;
+use tabray_world::geometry::aabb::Aabb;
+use tabray_world::geometry::sight::Line;
+
+/// The maximum number of examined parts of the rectangle for a line.
+const MAX_PATCHES: usize = 2048;
+
+/// The margin by which a part is enlarged on each side before the test, as a fraction of its width. With it, a solution
+/// at a side of a part is proven like any other.
+const MARGIN: f64 = 0.125;
+
+/// The maximum number of steps to narrow the enclosure of a solution.
+const STEPS: usize = 40;
+
+/// The maximum width of the t of an undecided place at which the place counts as a hit, as a fraction of the
+/// coordinates.
+const NARROW: f64 = 1e-6;
+
+pub(super) type LeavesOut<'s, F> = dyn Fn(Interval<F>, &Rectangle<F>, bool) -> bool + 's;
+
+/// A search for the first hit with t > 0.
+pub(super) struct Search<'s, F: Float> {
+    pub shape: &'s ParametricShape,
+    pub line: &'s Line<Interval<F>>,
+    /// Tells whether a hit does not count, given its t, the place of its u and v, and whether the place certainly has a
+    /// hit.
+    pub is_left_out: &'s LeavesOut<'s, F>,
+}
+
+/// A hit.
+#[derive(Clone, Copy)]
+pub(super) struct Hit<F> {
+    pub t: Interval<F>,
+    /// The u and v of the hit.
+    pub place: Rectangle<F>,
+    /// The index of the leaf with the hit.
+    pub leaf: usize,
+    /// Whether the hit may be beyond the ends of u and v, where the surface ends.
+    pub is_edge: bool,
+}
+
+/// The result of a search.
+pub(super) struct Found<F> {
+    /// The first proven hit.
+    pub hit: Option<Hit<F>>,
+    /// The t from which on there may be unproven hits.
+    pub undecided: Option<F>,
+    /// The t of the first place that may have a hit and is not cut further.
+    pub narrow: Option<Interval<F>>,
+}
+
+/// A part waiting for its test.
+struct Part<F> {
+    from: f64,
+    /// The order in which parts were made. It decides between equal parts.
+    number: usize,
+    leaf: usize,
+    part: Rectangle<F>,
+}
+
+impl<F> Ord for Part<F> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.from.total_cmp(&self.from).then(other.number.cmp(&self.number))
+    }
+}
+
+impl<F> PartialOrd for Part<F> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<F> PartialEq for Part<F> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<F> Eq for Part<F> {}
+
+/// The result of the test of a part.
+enum Judged<F> {
+    /// The part has no hit.
+    Free,
+    /// The part has at most one hit, in this narrower place, which may extend beyond the part.
+    One(Rectangle<F>),
+    /// All hits of the part are in this place.
+    In(Rectangle<F>),
+}
+
+impl<F: Float> Search<'_, F>
+where
+    dyn Patches: PatchesIn<F>,
+{
+    pub fn first(&self) -> Found<F> {
+        let (mut waiting, mut number) = (BinaryHeap::new(), 0);
+        // Tests in `f64` are faster, and come first.
+        let line = Line { origin: self.line.origin.map(nearly), dir: self.line.dir.map(nearly) };
+        let quick = Search { shape: self.shape, line: &line, is_left_out: &|_, _, _| false };
+        let clip = |around: &Aabb| line.clip(around.low, around.high);
+        self.shape.tree.visit(&|around| clip(around).is_some(), &mut |leaf, part, around| {
+            let is_free = !quick.may_meet(self.shape.tree.flat(leaf))
+                || F::IS_LONG && matches!(quick.judged(part), Judged::Free);
+            if !is_free {
+                let from = clip(around).map_or(0.0, |(from, _)| from.next_down());
+                waiting.push(Part { from, number, leaf, part: part.map(Interval::from_f64) });
+                number += 1;
+            }
+        });
+        let mut found = Found { hit: None, undecided: None, narrow: None };
+        let mut left = (if F::IS_LONG { MAX_PATCHES / 32 } else { MAX_PATCHES }).max(2 * number);
+        while let Some(Part { from, leaf, part, .. }) = waiting.pop() {
+            if found.hit.is_some_and(|hit: Hit<F>| F::of(from) > hit.t.high) {
+                break;
+            }
+            if left == 0 {
+                found.doubt(F::of(from));
+                self.note_narrow(&mut found, self.t(&self.shape.patches.points(&part)), &part);
+                break;
+            }
+            left -= 1;
+            match self.judged(&part) {
+                Judged::Free => {}
+                Judged::One(place) => self.add(&mut found, leaf, place),
+                Judged::In(place) => {
+                    let t = self.t(&self.shape.patches.points(&place));
+                    if t.high <= F::of(0.0) || self.is_off(&place) {
+                        continue;
+                    }
+                    if !self.is_wide(&place) {
+                        if !(self.is_left_out)(t, &place, false) {
+                            found.doubt(t.low);
+                        }
+                        self.note_narrow(&mut found, t, &place);
+                        continue;
+                    }
+                    let axis = self.longer(&place);
+                    let (mut one, mut other, middle) = (place, place, place[axis].middle());
+                    (one[axis].high, other[axis].low) = (middle, middle);
+                    for part in [one, other] {
+                        let from = t.low.to_f64().next_down().max(0.0);
+                        waiting.push(Part { from, number, leaf, part });
+                        number += 1;
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// Notes a place with undecided hits if its points are at nearly the same distance from the line's start. A pole is
+    /// a single point, however wide its u is.
+    fn note_narrow(&self, found: &mut Found<F>, t: Interval<F>, place: &Rectangle<F>) {
+        let is_narrow = t.width().to_f64() <= NARROW * (t.high.to_f64().abs() + self.shape.size());
+        if is_narrow && t.high > F::of(0.0) && !(self.is_left_out)(t, place, false) {
+            found.narrow = Some(found.narrow.filter(|known| known.low <= t.low).unwrap_or(t));
+        }
+    }
+
+    /// Adds the only solution of a place, if it is a hit.
+    fn add(&self, found: &mut Found<F>, leaf: usize, place: Rectangle<F>) {
+        let ends = self.shape.ends().map(Interval::<F>::from_f64);
+        let is_in = |axis: usize| ends[axis].low <= place[axis].low && place[axis].high <= ends[axis].high;
+        let t = self.t(&self.near(&place).at);
+        if self.is_off(&place) || t.high <= F::of(0.0) || (self.is_left_out)(t, &place, true) {
+            return;
+        }
+        if t.low <= F::of(0.0) {
+            return found.doubt(F::of(0.0));
+        }
+        let hit = Hit { t, place, leaf, is_edge: !(is_in(0) && is_in(1)) };
+        found.hit = Some(match found.hit {
+            Some(known) if known.t.low <= t.high && t.low <= known.t.high => {
+                if !meet(&known.place, &place) {
+                    // Either of the two sheets may be hit first.
+                    found.doubt(known.t.low.min(t.low));
+                }
+                let t = Interval { low: known.t.low.min(t.low), high: known.t.high.min(t.high) };
+                Hit { t, is_edge: known.is_edge && hit.is_edge, ..known }
+            }
+            Some(known) if known.t.low <= t.low => known,
+            _ => hit,
+        });
+    }
+
+    /// Tells whether a place lies beyond the ends of u and v.
+    fn is_off(&self, place: &Rectangle<F>) -> bool {
+        let ends = self.shape.ends().map(Interval::<F>::from_f64);
+        (0..2).any(|axis| place[axis].high < ends[axis].low || ends[axis].high < place[axis].low)
+    }
+
+    /// Encloses the points of a narrow place by the mean value form.
+    fn near(&self, place: &Rectangle<F>) -> Patch<F> {
+        let mut patch = self.shape.patches.patch(place);
+        let middle = place.map(|side| Interval::point(side.middle()));
+        let centre = self.shape.patches.points(&middle);
+        for axis in 0..3 {
+            let off = [0, 1].map(|side| patch.along[side][axis] * (place[side] - middle[side]));
+            let by_slopes = centre[axis] + off[0] + off[1];
+            let at = &mut patch.at[axis];
+            *at = Interval { low: at.low.max(by_slopes.low), high: at.high.min(by_slopes.high) };
+        }
+        patch
+    }
+
+    /// Returns the axis with the largest component of the line's direction, and the two others.
+    fn axes(&self) -> [usize; 3] {
+        let size = |axis: usize| self.line.dir[axis].middle().to_f64().abs();
+        let steepest = (0..3).fold(0, |most, axis| if size(axis) > size(most) { axis } else { most });
+        [steepest, (steepest + 1) % 3, (steepest + 2) % 3]
+    }
+
+    /// Encloses the t of points on the line.
+    fn t(&self, at: &[Interval<F>; 3]) -> Interval<F> {
+        let [axis, ..] = self.axes();
+        (at[axis] - self.line.origin[axis]) / self.line.dir[axis]
+    }
+
+    /// Returns the left sides of the equations of two planes through the line.
+    fn off(&self, at: &[Interval<F>; 3]) -> [Interval<F>; 2] {
+        let from = [0, 1, 2].map(|axis| at[axis] - self.line.origin[axis]);
+        self.across(&from)
+    }
+
+    /// Returns the components of a vector along the normals of these planes.
+    fn across(&self, vector: &[Interval<F>; 3]) -> [Interval<F>; 2] {
+        let ([axis, one, other], dir) = (self.axes(), &self.line.dir);
+        [one, other].map(|side| vector[side] * dir[axis] - vector[axis] * dir[side])
+    }
+
+    /// Tests a part by Krawczyk's test, and narrows it as long as that helps.
+    fn judged(&self, part: &Rectangle<F>) -> Judged<F> {
+        let mut place = *part;
+        for _ in 0..STEPS {
+            let wide = place.map(|side| {
+                let margin = F::of(MARGIN) * side.width();
+                side + Interval { low: -margin, high: margin }
+            });
+            let patch = self.shape.patches.patch(&wide);
+            // The comparisons are false for NaN, where the surface is undefined beyond the ends of u and v.
+            if self.off(&patch.at).iter().any(|value| value.low > F::of(0.0) || value.high < F::of(0.0)) {
+                return Judged::Free;
+            }
+            let Some(image) = self.image(&wide, &patch) else { return Judged::In(place) };
+            if image.iter().zip(&wide).all(|(image, wide)| wide.low < image.low && image.high < wide.high) {
+                return Judged::One(self.narrowed(image));
+            }
+            let mut next = place;
+            for axis in 0..2 {
+                let (low, high) =
+                    (place[axis].low.max(image[axis].low), place[axis].high.min(image[axis].high));
+                if low > high {
+                    return Judged::Free;
+                }
+                next[axis] = Interval { low, high };
+            }
+            let shrinks = |axis: usize| next[axis].width() < F::of(0.7) * place[axis].width();
+            let goes_on = shrinks(0) || shrinks(1);
+            place = next;
+            if !goes_on || !self.is_wide(&place) {
+                break;
+            }
+        }
+        Judged::In(place)
+    }
+
+    /// Narrows the enclosure of a single solution.
+    fn narrowed(&self, mut place: Rectangle<F>) -> Rectangle<F> {
+        for _ in 0..STEPS {
+            let patch = self.shape.patches.patch(&place);
+            let Some(image) = self.image(&place, &patch) else { break };
+            let mut next = place;
+            for axis in 0..2 {
+                next[axis].low = place[axis].low.max(image[axis].low);
+                next[axis].high = place[axis].high.min(image[axis].high);
+            }
+            let is_narrower = (0..2).any(|axis| next[axis].width() < F::of(0.9) * place[axis].width());
+            place = next;
+            if !is_narrower {
+                break;
+            }
+        }
+        place
+    }
+
+    /// Returns the image of a place by Krawczyk's operator. All solutions in the place are in the image. If the image
+    /// is inside the place, there is exactly one. Returns `None` if the matrix of derivatives has no inverse.
+    fn image(&self, place: &Rectangle<F>, patch: &Patch<F>) -> Option<Rectangle<F>> {
+        let n = Interval::<F>::constant;
+        let middle = place.map(|side| Interval::point(side.middle()));
+        let value = self.off(&self.shape.patches.points(&middle));
+        // The columns are the derivatives with respect to u and v.
+        let [by_u, by_v] = [0, 1].map(|side| self.across(&patch.along[side]));
+        let [[a, c], [b, d]] = [by_u, by_v].map(|of| of.map(|value| value.middle().to_f64()));
+        let determinant = a * d - b * c;
+        let inverse = [[d, -b], [-c, a]].map(|row| row.map(|value| value / determinant));
+        if !inverse.iter().flatten().all(|value| value.is_finite()) {
+            return None;
+        }
+        let image = [0, 1].map(|row| {
+            let [one, other] = inverse[row].map(n);
+            let start = middle[row] - (one * value[0] + other * value[1]);
+            let left = [by_u, by_v].map(|of| one * of[0] + other * of[1]);
+            let identity = if row == 0 { [n(1.0), n(0.0)] } else { [n(0.0), n(1.0)] };
+            let off = |side: usize| (identity[side] - left[side]) * (place[side] - middle[side]);
+            start + off(0) + off(1)
+        });
+        image.iter().all(|side| side.is_bounded()).then_some(image)
+    }
+
+    /// Tells whether a place is wide enough to be cut.
+    fn is_wide(&self, place: &Rectangle<F>) -> bool {
+        let least = F::of(power_of_two(if F::IS_LONG { -120 } else { -40 }));
+        let ends = self.shape.ends();
+        (0..2).any(|axis| place[axis].width() > least * F::of(ends[axis].width()))
+    }
+
+    /// Returns the longer side of a place, relative to the rectangle.
+    fn longer(&self, place: &Rectangle<F>) -> usize {
+        let part = |axis: usize| place[axis].width().to_f64() / self.shape.ends()[axis].width();
+        usize::from(part(1) > part(0))
+    }
+}
+
+impl Search<'_, f64> {
+    /// Tells whether the line may pass through the bounds of a leaf.
+    fn may_meet(&self, flat: &Flat) -> bool {
+        let n = Interval::<f64>::constant;
+        let around = |of: [f64; 3]| self.across(&of.map(|value| Interval { low: -value, high: value }));
+        let (middle, error) = (self.off(&flat.middle.map(n)), around(flat.error));
+        let sides = flat.sides.map(|side| self.across(&side.map(n)));
+        (0..2).all(|plane| {
+            let reach = sides[0][plane].magnitude() + sides[1][plane].magnitude() + error[plane].magnitude();
+            let apart = middle[plane].low.max(-middle[plane].high);
+            // The comparison is false for NaN: unbounded leaves are not missed.
+            let is_missed = apart > reach * (1.0 + ROUNDED);
+            !is_missed
+        })
+    }
+}
+
+/// More than the error of a sum of three numbers, as a fraction of the sum.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// Encloses numbers in doubles, exactly if they are doubles.
+fn nearly<F: Float>(of: Interval<F>) -> Interval {
+    let nearest = Interval { low: of.low.to_f64(), high: of.high.to_f64() };
+    let is_same = F::of(nearest.low) == of.low && F::of(nearest.high) == of.high;
+    if is_same { nearest } else { of.coarse() }
+}
+
+/// Tells whether two places may have a common point.
+pub(super) fn meet<F: Float>(one: &Rectangle<F>, other: &Rectangle<F>) -> bool {
+    (0..2).all(|axis| one[axis].low <= other[axis].high && other[axis].low <= one[axis].high)
+}
+
+impl<F: Float> Found<F> {
+    fn doubt(&mut self, from: F) {
+        let from = from.max(F::of(0.0));
+        self.undecided = Some(self.undecided.map_or(from, |known| known.min(from)));
+    }
+}

@@ -1,0 +1,363 @@
+//! A second opinion on each proof about a formula of a scene: from the formula as it was written, which shares no
+//! simplification and no derivative with the search for hits.
+//!
+//! Between two places of different signs, a formula that is defined and continuous has a root. If a proof has none
+//! there, or a hit where the formula is not 0, one of the two is wrong, and the answer is open.
+
+use super::equation::{HitEnclosure, Values};
+use crate::geometry::sight::Line;
+use glam::DVec3;
+use tabray_exact::f64x8::{F64x8, LANES};
+use tabray_exact::formula::field::Field;
+use tabray_exact::formula::written::{Seen, Written};
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::scalar::{Scalar, per_axis};
+
+/// The number of halvings that look for a root between two places of different signs.
+const HALVINGS: usize = 64;
+
+/// The check of what is claimed along a line, which is in the formula's coordinates.
+struct Check<'s, F> {
+    field: &'s Field,
+    line: &'s Line<Interval<F>>,
+    extent: [DVec3; 2],
+    /// The ends of the pieces into which a proof cut the line, in order.
+    places: &'s [f64],
+}
+
+/// Returns what is claimed about the first hit of a line, or that it is open where the formula as it was written
+/// disagrees. `places` are the ends of the pieces into which the proof cut the line, in order.
+pub(super) fn first<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    claimed: HitEnclosure<F>,
+    places: &[f64],
+) -> HitEnclosure<F> {
+    let Some(field) = shape.field() else { return claimed };
+    let check = Check { field, line, extent: shape.extent(), places };
+    if check.holds(0.0, claimed) { claimed } else { HitEnclosure::Doubtful(F::of(0.0)) }
+}
+
+/// Returns what is claimed about all hits of a line, up to the first with which the formula as it was written
+/// disagrees, which is then open. The claim is that there are no hits but these before an open one.
+pub(super) fn all<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    mut claimed: Vec<HitEnclosure<F>>,
+    places: &[f64],
+) -> Vec<HitEnclosure<F>> {
+    let Some(field) = shape.field() else { return claimed };
+    let check = Check { field, line, extent: shape.extent(), places };
+    let mut from = F::of(0.0);
+    for index in 0..=claimed.len() {
+        let next = claimed.get(index).copied().unwrap_or(HitEnclosure::Misses);
+        if !check.holds(from.to_f64(), next) {
+            claimed.truncate(index);
+            claimed.push(HitEnclosure::Doubtful(from));
+            break;
+        }
+        if let HitEnclosure::Hits(at) = next {
+            from = at.high;
+        }
+    }
+    claimed
+}
+
+impl<F: Float> Check<'_, F> {
+    /// Tells whether the formula does not disagree with the claim that a hit is the first one after a place.
+    fn holds(&self, from: f64, claimed: HitEnclosure<F>) -> bool {
+        match claimed {
+            HitEnclosure::Misses => self.is_free(from, f64::INFINITY),
+            HitEnclosure::Hits(at) => self.is_root(at) && self.is_free(from, at.low.to_f64()),
+            HitEnclosure::Edge(at) => self.is_free(from, at.low.to_f64()),
+            HitEnclosure::Doubtful(_) => true,
+        }
+    }
+
+    /// Tells whether the formula may be defined and 0 in an interval, and change its sign there.
+    fn is_root(&self, root: Interval<F>) -> bool {
+        let mut written = self.field.written();
+        let mut seen = |t| written.at(&self.line.at(t));
+        let low = seen(Interval::point(root.low));
+        if low.is_defined() == Some(false) {
+            return false;
+        }
+        let Some(before) = low.sign() else { return true };
+        let high = seen(Interval::point(root.high));
+        if high.is_defined() == Some(false) {
+            return false;
+        }
+        // A formula of which squares were left out does not change its sign.
+        high.sign() != Some(before) || !self.field.keeps_signs() && seen(root).sign().is_none()
+    }
+
+    /// Tells whether the formula certainly has no change of sign between two places, as far as it is seen at the ends
+    /// of pieces, and at places drawn from the bits of the line.
+    fn is_free(&self, from: f64, to: f64) -> bool {
+        let [origin, dir] = [self.line.origin, self.line.dir].map(|of| of.map(|axis| axis.middle().to_f64()));
+        let Some((from, to)) = self.within(origin, dir, (from, to)) else { return true };
+        let mut bits = bits_of(origin, dir);
+        let drawn: [f64; LANES] = std::array::from_fn(|place| {
+            bits = bits.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            let part = (bits >> 11) as f64 / (1_u64 << 53) as f64;
+            from + (place as f64 + part) / LANES as f64 * (to - from)
+        });
+        let first = self.places.partition_point(|t| *t <= from);
+        let (mut ends, mut drawn) = (self.places[first..].iter().peekable(), drawn.iter().peekable());
+        let mut next = || match (ends.peek().copied(), drawn.peek().copied()) {
+            (Some(end), Some(place)) if end < place => ends.next(),
+            (Some(end), None) if *end < to => ends.next(),
+            (_, place) => place.is_some().then(|| drawn.next())?,
+        };
+        let mut last: Option<(f64, bool)> = None;
+        loop {
+            let (mut some, mut count) = ([to; LANES], 0);
+            while let Some(place) = if count < LANES { next() } else { None } {
+                some[count] = *place;
+                count += 1;
+            }
+            if count == 0 {
+                return true;
+            }
+            let at =
+                per_axis(|axis| F64x8::constant(origin[axis]) + F64x8::constant(dir[axis]) * F64x8(some));
+            for (t, value) in some[..count].iter().zip(self.field.as_written_at(at).0) {
+                if value.is_nan() || value == 0.0 {
+                    continue;
+                }
+                let is_above = value > 0.0;
+                if let Some((before, was_above)) = last
+                    && was_above != is_above
+                    && self.crosses(before, *t)
+                {
+                    return false;
+                }
+                last = Some((*t, is_above));
+            }
+        }
+    }
+
+    /// Returns the part of a line between two places that is in the box, in plain numbers.
+    fn within(&self, origin: [f64; 3], dir: [f64; 3], (mut from, mut to): (f64, f64)) -> Option<(f64, f64)> {
+        let [low, high] = self.extent;
+        for axis in 0..3 {
+            let [one, other] = [low[axis], high[axis]].map(|side| (side - origin[axis]) / dir[axis]);
+            if dir[axis] != 0.0 {
+                (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
+            } else if origin[axis] < low[axis] || origin[axis] > high[axis] {
+                return None;
+            }
+        }
+        (from < to && to.is_finite()).then_some((from, to))
+    }
+
+    /// Tells whether the formula certainly crosses 0 between two places, inside of the box.
+    fn crosses(&self, mut low: f64, mut high: f64) -> bool {
+        let coarse = |of: [Interval<F>; 3]| of.map(Interval::coarse);
+        let line = Line { origin: coarse(self.line.origin), dir: coarse(self.line.dir) };
+        let mut written: Written<f64> = self.field.written();
+        let mut seen = |low: f64, high: f64| written.at(&line.at(Interval { low, high }));
+        let sign = |of: Seen<f64>| of.sign().filter(|_| of.is_defined() == Some(true));
+        let (Some(before), Some(after)) = (sign(seen(low, low)), sign(seen(high, high))) else {
+            return false;
+        };
+        if before == after {
+            return false;
+        }
+        for _ in 0..HALVINGS {
+            let over = seen(low, high);
+            if over.is_continuous() && self.is_inside(line.at(Interval { low, high })) {
+                return true;
+            }
+            let middle = low + 0.5 * (high - low);
+            match sign(seen(middle, middle)) {
+                Some(sign) if sign == before => low = middle,
+                Some(_) => high = middle,
+                None => return false,
+            }
+        }
+        false
+    }
+
+    fn is_inside(&self, at: [Interval; 3]) -> bool {
+        let [low, high] = self.extent;
+        (0..3).all(|axis| at[axis].low > low[axis] && at[axis].high < high[axis])
+    }
+}
+
+/// Mixes the bits of a line.
+fn bits_of(origin: [f64; 3], dir: [f64; 3]) -> u64 {
+    origin.iter().chain(&dir).fold(0, |bits: u64, number| {
+        (bits ^ number.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certify::equation::Equation;
+    use crate::certify::{Enclosure, Precision, first_hit};
+    use crate::geometry::sight::Sight;
+    use f256::f256;
+    use std::sync::Arc;
+    use tabray_exact::formula::Formula;
+
+    /// A surface whose proofs are about one formula, although the scene has another.
+    struct Surface {
+        proven: Field,
+        written: Field,
+    }
+
+    impl Equation for Surface {
+        fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+            self.proven.at(at)
+        }
+
+        fn field(&self) -> Option<&Field> {
+            Some(&self.written)
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::splat(-2.0), DVec3::splat(2.0)]
+        }
+    }
+
+    fn field(text: &str) -> Field {
+        let formula =
+            Formula::parse_in(text, Field::VARIABLES).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
+        Field::new(Arc::new(formula)).expect("its variables are x, y and z")
+    }
+
+    fn surface(written: &str) -> Surface {
+        Surface { proven: field(written), written: field(written) }
+    }
+
+    fn line<F: Float>(origin: [f64; 3], dir: [f64; 3]) -> Line<Interval<F>> {
+        Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) }
+    }
+
+    /// Returns whether the check lets a claim about a line along z from z = -3 pass, in each precision.
+    fn passes(text: &str, [x, y]: [f64; 2], claimed: HitEnclosure<f64>) -> [bool; 2] {
+        fn pass<F: Float>(text: &str, start: [f64; 3], claimed: HitEnclosure<F>) -> bool {
+            first(&surface(text), &line::<F>(start, [0.0, 0.0, 1.0]), claimed, &[]) == claimed
+        }
+        let finely = match claimed {
+            HitEnclosure::Misses => HitEnclosure::Misses,
+            HitEnclosure::Hits(at) => HitEnclosure::Hits(Interval::from_f64(at)),
+            HitEnclosure::Edge(at) => HitEnclosure::Edge(Interval::from_f64(at)),
+            HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(f256::from(from)),
+        };
+        let start = [x, y, -3.0];
+        [pass::<f64>(text, start, claimed), pass::<f256>(text, start, finely)]
+    }
+
+    #[test]
+    fn what_is_true_passes() {
+        let hits = |at: f64| HitEnclosure::Hits(Interval { low: at - 1e-12, high: at + 1e-12 });
+        for (text, at, claimed) in [
+            ("x^2 + y^2 + z^2 - 1", [0.0, 0.5], hits(3.0 - 0.75_f64.sqrt())),
+            ("x^2 + y^2 + z^2 - 1", [0.9, 0.5], HitEnclosure::Misses),
+            // The poles and jumps skip 0.
+            ("1/z + 3", [0.1, 0.2], hits(3.0 - 1.0 / 3.0)),
+            ("1/z", [0.1, 0.2], HitEnclosure::Misses),
+            ("tan(z) + x", [0.0, 0.0], hits(3.0)),
+            ("floor(z) + 0.5", [0.0, 0.0], HitEnclosure::Misses),
+            ("if(z < 0.3, -1, 1)", [0.0, 0.0], HitEnclosure::Misses),
+            ("sign(z - 0.1)*(1 + z^2)", [0.0, 0.0], HitEnclosure::Misses),
+            ("atan2(z, x)", [-0.5, 0.0], HitEnclosure::Misses),
+            // It would be 0 where the root is not defined.
+            ("z - 1 - sqrt(x - 1)", [0.5, 0.0], HitEnclosure::Misses),
+            ("z - ln(x)", [-0.5, 0.0], HitEnclosure::Misses),
+            // Outside of the box.
+            ("z - 2.5", [0.0, 0.0], HitEnclosure::Misses),
+            ("acos(y/z) - 2", [0.0, -0.5], hits(3.0 - 0.5 / libm::cos(2.0))),
+        ] {
+            assert_eq!(passes(text, at, claimed), [true; 2], "{text} at {at:?}: {claimed:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_false_is_open() {
+        let hits = |low: f64, high: f64| HitEnclosure::Hits(Interval { low, high });
+        for (text, at, claimed) in [
+            // A plane that is left out.
+            ("z", [0.1, 0.2], HitEnclosure::Misses),
+            ("(z - 0.3)^3*exp(x)", [0.1, 0.2], HitEnclosure::Misses),
+            ("1/z + 0.8", [0.1, 0.2], HitEnclosure::Misses),
+            ("acos(y/z) - 2", [0.0, 0.5], HitEnclosure::Misses),
+            // A later root in place of the first.
+            ("z*(z - 1)", [0.1, 0.2], hits(3.9999, 4.0001)),
+            // No root.
+            ("z", [0.1, 0.2], hits(2.9, 2.99)),
+            ("1 + z^2 + x", [0.1, 0.2], hits(2.9, 3.1)),
+            // A pole, and where nothing is defined.
+            ("z/y + 0.1", [-0.5, 0.0], hits(2.9, 3.1)),
+            ("sqrt(x) + z", [-0.5, 0.0], hits(2.9, 3.1)),
+        ] {
+            assert_eq!(passes(text, at, claimed), [false; 2], "{text} at {at:?}: {claimed:?}");
+        }
+    }
+
+    #[test]
+    fn a_thin_layer_is_seen_at_the_ends_of_pieces() {
+        let (surface, line) =
+            (surface("(z - 0.7)*(z - 0.7001)"), line::<f64>([0.0, 0.0, -3.0], [0.0, 0.0, 1.0]));
+        let checked = |places: &[f64]| first(&surface, &line, HitEnclosure::Misses, places);
+        assert_eq!(checked(&[1.5, 3.0]), HitEnclosure::Misses);
+        assert_eq!(checked(&[1.5, 3.700_05]), HitEnclosure::Doubtful(0.0));
+    }
+
+    #[test]
+    fn a_fault_in_a_list_of_hits_ends_it() {
+        let (surface, line) = (surface("z*(z - 1)"), line::<f64>([0.1, 0.2, -3.0], [0.0, 0.0, 1.0]));
+        let hit = |at: f64| HitEnclosure::Hits(Interval { low: at - 1e-9, high: at + 1e-9 });
+        let (one, two) = (hit(3.0), hit(4.0));
+        assert_eq!(all(&surface, &line, vec![one, two], &[]), [one, two]);
+        assert!(matches!(
+            all(&surface, &line, vec![one], &[])[..],
+            [HitEnclosure::Hits(_), HitEnclosure::Doubtful(_)]
+        ));
+        assert!(matches!(all(&surface, &line, vec![two], &[])[..], [HitEnclosure::Doubtful(_)]));
+        assert!(matches!(all(&surface, &line, vec![one, hit(3.5)], &[])[..], [_, HitEnclosure::Doubtful(_)]));
+    }
+
+    /// Proofs about another formula than that of the scene become open, where the two differ along a ray.
+    #[test]
+    fn planted_faults_become_open() {
+        let mut counts = [0; 3];
+        for (proven, written) in [
+            ("x^2 + y^2 + z^2 - 1", "x^2 + y^2 + z^2 - 1.5"),
+            ("y - 0.5*x", "y + 0.5*x"),
+            ("acos(y/z) - 2", "acos(y/z) - 1.8"),
+            ("sin(3*x) + z", "sin(3*x) + z - 0.01"),
+        ] {
+            let surface = Surface { proven: field(proven), written: field(written) };
+            for ray in 0..200 {
+                let part = |by: usize| (ray * by % 211) as f64 / 105.0 - 1.0;
+                let origin = DVec3::new(4.0 * part(31), 4.0 * part(53), 5.0);
+                let sight = Sight::exactly(origin, DVec3::new(part(71), part(87), part(101)) - origin);
+                let own = |of: &Field| {
+                    let own = Surface { proven: of.clone(), written: of.clone() };
+                    first_hit(&own, &sight, Precision::Double)
+                };
+                match (first_hit(&surface, &sight, Precision::Double), own(&surface.written)) {
+                    (Enclosure::Doubtful(_), _) => counts[0] += 1,
+                    (Enclosure::Hits(one), Enclosure::Hits(other))
+                        if one.low <= other.high && other.low <= one.high =>
+                    {
+                        counts[1] += 1;
+                    }
+                    (Enclosure::Misses, Enclosure::Misses) => counts[1] += 1,
+                    (_, Enclosure::Doubtful(_)) => {}
+                    (one, other) => {
+                        counts[2] += 1;
+                        println!("{proven} and {written}: {one:?} {other:?}");
+                    }
+                }
+            }
+        }
+        let [open, same, wrong] = counts;
+        // Only a layer thinner than the distance of the places that are looked at stays unseen.
+        assert!(open > 200 && same > 50 && 50 * wrong <= open, "{counts:?}");
+    }
+}

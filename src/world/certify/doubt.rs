@@ -1,0 +1,110 @@
+//! Why the first hit of a ray stays open.
+
+use super::hit_proofs::{HitProofs, ProofMethods};
+use crate::geometry::sight::Sight;
+use f256::f256;
+use std::fmt;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::Wide;
+
+/// Why a proof with 237 bits leaves a ray's first hit of a shape open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Doubt {
+    /// The equation and its slope along the ray are 0 at one point, as far as 237 bits tell: where the ray touches the
+    /// surface, or where a factor of the equation is squared.
+    Touched,
+    /// The equation has no slope there, as where a profile jumps.
+    Jumps,
+    /// The ray does not touch the surface, and the equation does not jump: the search needs more digits or more steps.
+    Long,
+    /// The surface is given by u and v, without an equation. Krawczyk's test decides nothing where the derivatives by
+    /// u and v are parallel or 0, or where two sheets are equally far, as far as 237 bits tell.
+    Singular,
+}
+
+/// Displays the reason, phrased to follow the name of an object.
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Touched => "is 0 without a change of sign",
+            Self::Jumps => "jumps",
+            Self::Singular => "has a pole or a fold there, or meets itself",
+            Self::Long => "takes more than 237 bits, or more steps than are tried",
+        })
+    }
+}
+
+/// The widths of the places that are examined, as fractions of the distance. The first is far wider than the
+/// uncertainty of a root with 237 bits, and far narrower than that with `f64`. The second is wider than the pieces to
+/// which a search cuts a jump.
+const TOUCH: f64 = 1e-30;
+const JUMP: f64 = 4.0 * f64::EPSILON;
+
+impl Doubt {
+    /// Returns why the first hit of a shape is open from a distance on, in lengths of the sight's direction.
+    pub fn of(shape: &dyn ProofMethods, sight: &Sight, from: f256) -> Self {
+        if !HitProofs::<f256>::has_equation(shape, 0) {
+            return Self::Singular;
+        }
+        let line = sight.line::<Wide>();
+        let within = |width: f64| {
+            let place = Wide { low: from, high: from * (f256::ONE + f256::from(width)) };
+            let at = line.along(Dual::variable(place));
+            let Dual { value, slope }: Dual<Wide> = HitProofs::<f256>::slope(shape, at, 0);
+            (value.has_zero(), slope)
+        };
+        if let (true, slope) = within(TOUCH)
+            && slope.is_bounded()
+            && slope.has_zero()
+        {
+            return Self::Touched;
+        }
+        match within(JUMP) {
+            (true, slope) if !slope.is_bounded() => Self::Jumps,
+            _ => Self::Long,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certify::{Enclosure, Equation, Precision, first_hit};
+    use glam::{DVec2, DVec3};
+    use tabray_exact::scalar::Scalar;
+
+    /// Surfaces across x, cut out of a box.
+    #[derive(Clone, Copy)]
+    enum Case {
+        Squared,
+        Step,
+    }
+
+    impl Equation for Case {
+        fn value<N: Scalar>(&self, [x, _, _]: [N; 3]) -> N {
+            let third = x - N::constant(1.0) / N::constant(3.0);
+            match self {
+                Self::Squared => third.powi(2) * (x + N::constant(7.0)),
+                Self::Step => third.floor() + N::constant(0.5),
+            }
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn what_is_touched_and_what_jumps_are_told_apart() {
+        let toward = DVec2::new(0.3, 0.4);
+        let sight = Sight::through(DVec3::new(0.5, 0.5, 3.0), toward, DVec2::ONE, DVec2::ONE);
+        for (case, doubt) in [(Case::Squared, Doubt::Touched), (Case::Step, Doubt::Jumps)] {
+            let Enclosure::Doubtful(from) = first_hit(&case, &sight, Precision::Octuple) else {
+                panic!("237 bits do not decide it")
+            };
+            assert_eq!(Doubt::of(&case, &sight, from), doubt);
+            let before = from * f256::from(0.99);
+            assert_eq!(Doubt::of(&case, &sight, before), Doubt::Long);
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Proofs about rays that continue from a point of a surface: mirrored, transmitted and shadow rays.
+//!
+//! No number of such a ray comes from the scene. The coefficients of its line are intervals, and the line starts at the
+//! true point on the surface, somewhere in an enclosure. The point is known to lie on the surface, although no interval
+//! shows that.
+
+use super::algebraic;
+use super::along::{PIECES, first_along, most_pieces};
+use super::equation::{Equation, HitEnclosure};
+use super::footprint::OverFootprint;
+use super::search::first_possible;
+use crate::geometry::sight::Line;
+use f256::f256;
+use tabray_exact::affine::Affine;
+use tabray_exact::dual::Dual;
+use tabray_exact::interval::{Fine, Float, Fraction, Interval, Wide};
+use tabray_exact::scalar::{Scalar, per_axis};
+
+/// Proofs about a shape's hits along any line, in one precision.
+pub trait HitProofs<F: Float> {
+    /// Returns what is proven about a line's first hit with t > 0, and the part of the shape that is hit. The line is
+    /// in world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize);
+
+    /// Returns what is proven about each of a line's hits with t > 0, in order, up to the first that is open; `None`
+    /// where each hit can only be found from the one before. Each has the part that is hit.
+    fn all_hits(
+        &self,
+        _line: &Line<Interval<F>>,
+        _leaves: Option<usize>,
+    ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
+        None
+    }
+
+    /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
+    fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
+
+    /// Tells whether a part has an equation. For a part without one, [`slope`](Self::slope) knows no value.
+    fn has_equation(&self, _part: usize) -> bool {
+        true
+    }
+
+    /// Encloses the unit normal with which a point of a part is shaded, where that normal differs from `normal`, the
+    /// normal of the surface. It is turned to the ray where both sides are lit; `None` where it is open.
+    fn shading_normal(
+        &self,
+        _at: [Interval<F>; 3],
+        _part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        Some(normal)
+    }
+
+    /// Encloses the coordinates u and v of the points of a part in a box in world coordinates; `None` where they are
+    /// not known.
+    fn uv_bounds(&self, _at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
+        None
+    }
+
+    /// Returns the index of a part's face, as [`Hittable::face`] tells it, if the parts of the shape are faces.
+    ///
+    /// [`Hittable::face`]: crate::hittable::Hittable::face
+    fn face_of(&self, _part: usize) -> Option<u32> {
+        None
+    }
+
+    /// Returns the index of the face on which the points of a part in a box in world coordinates lie, as
+    /// [`Hittable::face`] tells it; `None` where it is not known.
+    ///
+    /// [`Hittable::face`]: crate::hittable::Hittable::face
+    fn face(&self, _at: [Interval<F>; 3], _part: usize) -> Option<u32> {
+        None
+    }
+}
+
+/// Proofs about a shape's hits along any line, in every precision.
+pub trait ProofMethods: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint {}
+
+impl<T: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint> ProofMethods for T {}
+
+impl<E: Equation, F: Precise> HitProofs<F> for E {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
+        (F::along(self, line, leaves.is_some()), 0)
+    }
+
+    fn all_hits(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: Option<usize>,
+    ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
+        let all = F::all_along(self, line, leaves.is_some())?;
+        Some(all.into_iter().map(|hit| (hit, 0)).collect())
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3], _part: usize) -> Dual<Interval<F>> {
+        let point = Line { origin: at, dir: [Dual::constant(0.0); 3] };
+        self.value(self.to_local(point).origin)
+    }
+
+    fn uv_bounds(&self, at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
+        let point = Line { origin: at.map(Interval::coarse), dir: [Interval::constant(0.0); 3] };
+        Equation::uv_bounds(self, self.to_local(point).origin)
+    }
+}
+
+/// Encloses the gradient of a part's equation at a point: a vector along the normal.
+pub fn gradient<F: Float>(
+    shape: &(impl HitProofs<F> + ?Sized),
+    at: [Interval<F>; 3],
+    part: usize,
+) -> [Interval<F>; 3] {
+    per_axis(|axis| {
+        let along = |other: usize| {
+            if other == axis { Dual::variable(at[other]) } else { Dual::fixed(at[other]) }
+        };
+        shape.slope([along(0), along(1), along(2)], part).slope
+    })
+}
+
+/// Encloses the unit normals with which points of a part are shaded; `None` where they are open.
+pub fn shading_normals(
+    shape: &(impl HitProofs<f64> + ?Sized),
+    at: [Affine; 3],
+    part: usize,
+    normal: [Affine; 3],
+) -> Option<[Affine; 3]> {
+    let given = normal.map(|axis| axis.range());
+    let shaded = shape.shading_normal(at.map(|axis| axis.range()), part, given)?;
+    Some(if shaded == given { normal } else { shaded.map(Affine::from) })
+}
+
+/// A precision that proofs are tried in.
+pub trait Precise: Float {
+    /// Returns a shape's proofs in this precision.
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self>;
+
+    /// Returns what is proven about a line's first hit. With `leaves`, the line's true start lies on the shape.
+    fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> HitEnclosure<Self>;
+
+    /// Returns what is proven about each of a line's hits, as [`HitProofs::all_hits`] does.
+    fn all_along(
+        _shape: &impl Equation,
+        _line: &Line<Interval<Self>>,
+        _leaves: bool,
+    ) -> Option<Vec<HitEnclosure<Self>>> {
+        None
+    }
+
+    /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
+    fn narrow(of: Fine) -> Interval<Self>;
+
+    /// Converts an interval, exactly.
+    fn widen(of: Interval<Self>) -> Fine;
+}
+
+impl Precise for f64 {
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
+        shape
+    }
+
+    fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
+        let hit = algebraic::first_hit::<f64>(shape, line, leaves);
+        hit.unwrap_or_else(|| first_along(shape, line, leaves, PIECES, None))
+    }
+
+    fn all_along(
+        shape: &impl Equation,
+        line: &Line<Interval>,
+        leaves: bool,
+    ) -> Option<Vec<HitEnclosure<Self>>> {
+        algebraic::all_hits::<f64>(shape, line, leaves)
+    }
+
+    fn narrow(of: Fine) -> Interval {
+        let of = of.wide();
+        let (low, high) = (of.low.to_f64(), of.high.to_f64());
+        Interval {
+            low: if f256::from(low) == of.low { low } else { low.next_down() },
+            high: if f256::from(high) == of.high { high } else { high.next_up() },
+        }
+    }
+
+    fn widen(of: Interval) -> Fine {
+        Wide::from(of).into()
+    }
+}
+
+impl Precise for f256 {
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
+        shape
+    }
+
+    fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> HitEnclosure<Self> {
+        if let Some(hit) = algebraic::first_hit::<f256>(shape, line, leaves) {
+            return hit;
+        }
+        if is_closed(shape) {
+            return first_along(shape, line, leaves, 0, None);
+        }
+        // What 53 bits exclude need not be examined with 237.
+        let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
+        match first_possible(first_along::<f64>(shape, &coarse, leaves, PIECES, None)) {
+            Some(at) => first_along(shape, line, leaves, most_pieces(shape), Some(at.into())),
+            None => HitEnclosure::Misses,
+        }
+    }
+
+    fn all_along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
+        algebraic::all_hits::<f256>(shape, line, leaves)
+    }
+
+    fn narrow(of: Fine) -> Wide {
+        of.wide()
+    }
+
+    fn widen(of: Wide) -> Fine {
+        of.into()
+    }
+}
+
+/// Fractions decide ties of surfaces whose hits have closed forms; other surfaces are searched in 237 bits.
+impl Precise for Fraction {
+    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
+        shape
+    }
+
+    fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> HitEnclosure<Self> {
+        if is_closed(shape) {
+            return first_along(shape, line, leaves, 0, None);
+        }
+        finely(f256::along(shape, &wide(line), leaves))
+    }
+
+    fn all_along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
+        let all = (!is_closed(shape)).then(|| f256::all_along(shape, &wide(line), leaves))?;
+        Some(all?.into_iter().map(finely).collect())
+    }
+
+    fn narrow(of: Fine) -> Fine {
+        of
+    }
+
+    fn widen(of: Fine) -> Fine {
+        of
+    }
+}
+
+fn wide(line: &Line<Fine>) -> Line<Wide> {
+    Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) }
+}
+
+fn finely(hit: HitEnclosure<f256>) -> HitEnclosure<Fraction> {
+    match hit {
+        HitEnclosure::Misses => HitEnclosure::Misses,
+        HitEnclosure::Hits(at) => HitEnclosure::Hits(at.into()),
+        HitEnclosure::Edge(at) => HitEnclosure::Edge(at.into()),
+        HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(from.into()),
+    }
+}
+
+/// Tells whether the hits of a shape have closed forms.
+fn is_closed<E: Equation>(_shape: &E) -> bool {
+    E::IS_QUADRATIC
+}

@@ -1,0 +1,488 @@
+//! First hits of any surface, by splitting a line until each piece certainly has no root, or exactly one.
+
+use super::check;
+use super::equation::{HitEnclosure, Values, hit_at, may_be_hit};
+use crate::geometry::sight::Line;
+use tabray_exact::dual::Dual;
+use tabray_exact::formula::field::Field;
+use tabray_exact::interval::{Float, Interval};
+use tabray_exact::jet::Jet;
+use tabray_exact::scalar::{Scalar, per_axis};
+
+/// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of an
+/// ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of
+/// exponential functions take a long time.
+const JUMP: f64 = f64::EPSILON / 16.0;
+
+/// The number of pieces after which a search is given up if the shape is smaller than the rounding of the line.
+const FEW_PIECES: usize = 16;
+
+/// The width of the piece that is examined first where coarser numbers leave a hit in doubt, as a fraction of the line
+/// from there on: about that of the shortest piece with `f64`.
+const DOUBTFUL: f64 = 16.0 * f64::EPSILON;
+
+/// Returns the bounds of the first possible hit with t > 0, with no hit before them.
+pub fn first_possible<F: Float>(hit: HitEnclosure<F>) -> Option<Interval<F>> {
+    match hit {
+        HitEnclosure::Misses => None,
+        HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => Some(at),
+        HitEnclosure::Doubtful(from) => Some(Interval::point(from)),
+    }
+}
+
+/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
+/// true start lies on the surface, and is not a hit. If coarser numbers have found the first [possible
+/// hit](first_possible), the search begins there.
+pub fn first_hit<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    leaves: bool,
+    pieces: usize,
+    possible: Option<Interval<F>>,
+) -> HitEnclosure<F> {
+    let mut places = Vec::new();
+    let found = unchecked(shape, line, leaves, pieces, possible, &mut places);
+    check::first(shape, line, found, &places)
+}
+
+/// Finds the first hit, and adds the ends of the pieces that have none.
+fn unchecked<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    leaves: bool,
+    pieces: usize,
+    possible: Option<Interval<F>>,
+    places: &mut Vec<f64>,
+) -> HitEnclosure<F> {
+    let zero = F::of(0.0);
+    let Some((mut from, to)) = clipped(shape, line) else { return HitEnclosure::Misses };
+    let possible = possible.unwrap_or(Interval::point(zero));
+    from = from.max(possible.low);
+    if from > to {
+        return HitEnclosure::Misses;
+    }
+    if !to.is_finite() {
+        return HitEnclosure::Doubtful(from);
+    }
+    if leaves && from == zero {
+        match left(shape, line, to) {
+            Some(length) => from = length,
+            None => return HitEnclosure::Doubtful(zero),
+        }
+        if from == to {
+            return HitEnclosure::Misses;
+        }
+    }
+    // The parameter counts from near the shape, so a piece of the line is not a small difference of large numbers.
+    let base = Interval::point(from + F::of(0.5) * (to - from));
+    let near = Line { origin: line.at(base), dir: line.dir };
+    // Where rounding moves the line by more than the shape's size, a hit cannot be proven, and a miss is proven at once
+    // or not at all.
+    let [low, high] = shape.extent();
+    let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
+    let pieces = if is_lost { pieces.min(FEW_PIECES) } else { pieces };
+    let place = |t: F| (Interval::point(t) - base).high;
+    let ends = ((Interval::point(from) - base).low, place(to));
+    let first = possible.high.max(from + F::of(DOUBTFUL) * (to - from));
+    let first = if possible.low > zero && first < to { Some(place(first)) } else { None };
+    search_pieces(shape, &near, (ends, first), base, pieces, places)
+}
+
+/// Finds the first hit between two ends of a line whose parameter counts from `base`. The line is first cut at a place
+/// that is given.
+fn search_pieces<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    near: &Line<Interval<F>>,
+    ((from, to), first): ((F, F), Option<F>),
+    base: Interval<F>,
+    pieces: usize,
+    places: &mut Vec<f64>,
+) -> HitEnclosure<F> {
+    let zero = F::of(0.0);
+    // A piece shorter than about 8 ulps of the whole is too short to split.
+    let shortest = F::of(8.0) * F::EPSILON * (to - from);
+    let shortest_jump = shortest.max(F::of(JUMP) * (to - from));
+    let search = Search { shape, line: near };
+    let mut pending = match first {
+        Some(first) => [open_pieces(shape, near, (first, to)), vec![(from, first)]].concat(),
+        None => open_pieces(shape, near, (from, to)),
+    };
+    for _ in 0..pieces {
+        let Some((low, high)) = pending.pop() else { return HitEnclosure::Misses };
+        let piece = Interval { low, high };
+        let start = || (base + Interval::point(low)).low.max(zero);
+        match search.judge(piece) {
+            Judgement::Free => places.push((base.low + low).to_f64()),
+            Judgement::Root(root) => {
+                let distance = base + root;
+                if distance.high <= zero {
+                    continue;
+                }
+                if distance.low <= zero {
+                    return HitEnclosure::Doubtful(zero);
+                }
+                if let Some(hit) = hit_at(shape, near, root, distance) {
+                    return hit;
+                }
+            }
+            // A value that is exactly 0 where a short piece ends is hardly doubted less where a shorter one does.
+            Judgement::Open
+                if high - low > shortest_jump || high - low > shortest && !search.is_zero_at(high) =>
+            {
+                pending.extend(cut(low, high))
+            }
+            Judgement::Jump if high - low > shortest_jump => pending.extend(cut(low, high)),
+            // A root that is certainly cut off is no hit.
+            Judgement::Open | Judgement::Jump => {
+                if may_be_hit(shape, near, piece) {
+                    return HitEnclosure::Doubtful(start());
+                }
+            }
+            Judgement::Touch(at) => {
+                if may_be_hit(shape, near, at) {
+                    return HitEnclosure::Doubtful((base + at).low.max(zero));
+                }
+            }
+        }
+    }
+    HitEnclosure::Doubtful(
+        pending.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)),
+    )
+}
+
+/// Returns the pieces of a line between two places on which the value may be 0, the nearest one last.
+fn open_pieces<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    (from, to): (F, F),
+) -> Vec<(F, F)> {
+    let Some(cells) = shape.field().and_then(Field::cells) else { return vec![(from, to)] };
+    let [base, dir] = [line.origin, line.dir].map(|of| of.map(|axis| axis.middle().to_f64()));
+    let mut pieces = Vec::new();
+    let nothing: Option<()> = cells.visit(base, dir, (from.to_f64(), to.to_f64()), &mut |low, high| {
+        pieces.push((F::of(low), F::of(high)));
+        None
+    });
+    debug_assert_eq!(nothing, None);
+    pieces.reverse();
+    pieces
+}
+
+/// Returns a length from a line's start, which lies on the surface, within which the value is strictly monotonic, and
+/// so has no other root; at most `to`. `None` where the line touches the surface, as far as intervals tell.
+fn left<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>, to: F) -> Option<F> {
+    let shortest = F::of(1024.0) * F::EPSILON * to;
+    let mut length = to;
+    while length > shortest {
+        let piece = Interval { low: F::of(0.0), high: length };
+        let slope = shape.slope(line.along(Dual::variable(piece))).slope;
+        if slope.is_bounded() && !slope.has_zero() {
+            return Some(length);
+        }
+        length = F::of(0.5) * length;
+    }
+    None
+}
+
+/// Cuts a piece in two, the nearer one last. Not in the middle, where the round numbers of scenes often put a root.
+fn cut<F: Float>(low: F, high: F) -> [(F, F); 2] {
+    let cut = low + F::of(0.493) * (high - low);
+    [(cut, high), (low, cut)]
+}
+
+/// Clips a line to the extent of a shape, from t = 0 on.
+fn clipped<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>) -> Option<(F, F)> {
+    let [low, high] = shape.extent();
+    line.clip(low, high)
+}
+
+/// The search for roots of an equation along a line.
+struct Search<'s, F> {
+    shape: &'s dyn Values<Interval<F>>,
+    line: &'s Line<Interval<F>>,
+}
+
+/// What is proven about the roots in a piece of a line.
+enum Judgement<F> {
+    /// The piece has no root.
+    Free,
+    /// The piece has exactly one root, enclosed by this interval.
+    Root(Interval<F>),
+    /// The value may be 0 only in this interval, where its slope is 0. Shorter pieces do not tell whether it is.
+    Touch(Interval<F>),
+    /// It is certain neither that the piece has no root nor that it has exactly one.
+    Open,
+    /// As for `Open`, and the slope has no bound, as where the value jumps.
+    Jump,
+}
+
+impl<F: Float> Search<'_, F> {
+    fn value(&self, t: Interval<F>) -> Interval<F> {
+        self.shape.value(self.line.at(t))
+    }
+
+    fn is_zero_at(&self, t: F) -> bool {
+        self.value(Interval::point(t)).is_zero()
+    }
+
+    /// Encloses the value and its first derivative.
+    fn slope(&self, t: Interval<F>) -> Dual<Interval<F>> {
+        self.shape.slope(self.line.along(Dual::variable(t)))
+    }
+
+    /// Encloses the second derivative.
+    fn bend(&self, t: Interval<F>) -> Interval<F> {
+        let t = Jet::variable(t);
+        let Line { origin, dir } = self.line;
+        let at = per_axis(|axis| Jet::fixed(origin[axis]) + t * Jet::fixed(dir[axis]));
+        self.shape.bend(at).second
+    }
+
+    /// Tells whether a piece has no hit although the slope has no bounds: the surface is cut off there, as where its
+    /// formula is not defined, or the formula jumps past 0.
+    fn is_broken(&self, piece: Interval<F>) -> bool {
+        let jumps = |field: &Field| field.jumps_past_0(self.line.at(piece));
+        self.shape.field().is_some_and(jumps) || !may_be_hit(self.shape, self.line, piece)
+    }
+
+    /// Judges a piece by the mean value theorem of first and then of second order.
+    fn judge(&self, piece: Interval<F>) -> Judgement<F> {
+        let Dual { value, slope } = self.slope(piece);
+        if !value.has_zero() {
+            return Judgement::Free;
+        }
+        // Where the value is 0 all along a piece, so it is along shorter ones.
+        if value.is_zero() {
+            return Judgement::Touch(piece);
+        }
+        // Without bounds of the value and the slope, no mean value theorem helps.
+        if !(slope.is_bounded() && value.is_bounded()) {
+            return if self.is_broken(piece) { Judgement::Free } else { Judgement::Jump };
+        }
+        let middle = Interval::point(piece.middle());
+        let around = piece - middle;
+        let at_middle = self.slope(middle);
+        if !(at_middle.value + slope * around).has_zero() {
+            return Judgement::Free;
+        }
+        if !slope.has_zero() {
+            return self.only(piece, slope);
+        }
+        // The slope on the whole piece, by the second derivative.
+        let bend = self.bend(piece);
+        let mean_slope = at_middle.slope + bend * around;
+        if !(at_middle.value + mean_slope * around).has_zero() {
+            return Judgement::Free;
+        }
+        if !mean_slope.has_zero() {
+            return self.only(piece, mean_slope);
+        }
+        if bend.has_zero() || !bend.is_bounded() { Judgement::Open } else { self.turning(piece, bend) }
+    }
+
+    /// Judges a piece on which the second derivative has these bounds. They do not contain 0, so the slope is 0 at no
+    /// more than one place. If there is such a place, the value there decides. Where no number of digits tells that
+    /// value from 0, shorter pieces would not help.
+    fn turning(&self, piece: Interval<F>, bend: Interval<F>) -> Judgement<F> {
+        let (mut place, mut exists) = (piece, false);
+        loop {
+            let middle = Interval::point(place.middle());
+            let step = middle - self.slope(middle).slope / bend;
+            exists |= step.low > place.low && step.high < place.high;
+            let next = Interval { low: step.low.max(place.low), high: step.high.min(place.high) };
+            // Written so that a NaN ends the loop, too.
+            if !(next.low <= next.high && next.width() < F::of(0.75) * place.width()) {
+                break;
+            }
+            place = next;
+        }
+        if !exists {
+            return Judgement::Open;
+        }
+        let (middle, zero) = (Interval::point(place.middle()), F::of(0.0));
+        let Dual { value, slope } = self.slope(middle);
+        let around = place - middle;
+        let extreme = value + (slope + bend * around) * around;
+        if !extreme.has_zero() {
+            // An extreme beyond 0 has a root on each side of it.
+            let is_away = (extreme.low > zero) == (bend.low > zero);
+            return if is_away { Judgement::Free } else { Judgement::Open };
+        }
+        // The value is at least that far from its extreme: bend / 2 times the square of the distance.
+        let least = Interval::point(bend.low.abs().min(bend.high.abs()));
+        let reach = (Interval::constant(2.0) * Interval::point(extreme.magnitude()) / least).sqrt().high;
+        let reach = Interval { low: -reach, high: reach };
+        let at = place + reach;
+        Judgement::Touch(Interval { low: at.low.max(piece.low), high: at.high.min(piece.high) })
+    }
+
+    /// Judges a piece on which the value is strictly monotonic, with these slopes, and has at most one root.
+    fn only(&self, piece: Interval<F>, slope: Interval<F>) -> Judgement<F> {
+        let sign = |at: F| self.value(Interval::point(at));
+        let (first, last) = (sign(piece.low), sign(piece.high));
+        if !first.has_zero() && !last.has_zero() {
+            let zero = F::of(0.0);
+            return if (first.low > zero) == (last.low > zero) {
+                Judgement::Free
+            } else {
+                Judgement::Root(self.narrowed(piece, slope))
+            };
+        }
+        // The root may lie where two pieces meet. On a wider piece, the interval Newton method proves that it exists.
+        let margin = piece.width();
+        let wide = Interval { low: piece.low - margin, high: piece.high + margin };
+        let slope = self.slope(wide).slope;
+        if slope.has_zero() {
+            return Judgement::Open;
+        }
+        let step = self.step(wide, slope);
+        if step.low > wide.low && step.high < wide.high {
+            let root = self.narrowed(step, slope);
+            let is_here = root.high >= piece.low && root.low <= piece.high;
+            return if is_here { Judgement::Root(root) } else { Judgement::Free };
+        }
+        Judgement::Open
+    }
+
+    /// Encloses the root that a piece with these slopes may have, by a step of the interval Newton method. If the
+    /// result lies inside the piece, the root exists.
+    fn step(&self, piece: Interval<F>, slope: Interval<F>) -> Interval<F> {
+        let middle = Interval::point(piece.middle());
+        middle - self.value(middle) / slope
+    }
+
+    /// Narrows the enclosure of a piece's root as far as rounding allows.
+    fn narrowed(&self, mut piece: Interval<F>, mut slope: Interval<F>) -> Interval<F> {
+        loop {
+            let step = self.step(piece, slope);
+            let next = Interval { low: step.low.max(piece.low), high: step.high.min(piece.high) };
+            // Written so that a NaN ends the loop, too.
+            if !(next.low <= next.high && next.width() < F::of(0.75) * piece.width()) {
+                return piece;
+            }
+            piece = next;
+            let nearer = self.slope(piece).slope;
+            if !nearer.has_zero() {
+                slope = nearer;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certify::equation::Equation;
+    use f256::f256;
+    use glam::DVec3;
+    use std::cell::Cell;
+
+    /// A profile's step at x = 0.3, and the number of times that it was evaluated.
+    struct Step(Cell<usize>);
+
+    impl Equation for Step {
+        fn value<N: Scalar>(&self, [x, _, _]: [N; 3]) -> N {
+            self.0.set(self.0.get() + 1);
+            (x - N::constant(0.3)).floor() + N::constant(0.5)
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn a_shape_smaller_than_rounding_is_in_doubt_after_a_few_pieces() {
+        let step = Step(Cell::new(0));
+        let third = |x| Interval::<f256>::constant(x) / Interval::constant(3.0);
+        let line = Line {
+            origin: [third(1e90), third(0.5), third(0.5)],
+            dir: [third(-1.0), third(0.0), third(0.0)],
+        };
+        let found = first_hit(&step, &line, false, 2000, None);
+        assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
+        assert!(step.0.get() < 100, "{} evaluations", step.0.get());
+    }
+
+    #[test]
+    fn a_jump_is_left_in_doubt_after_a_few_pieces() {
+        let step = Step(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000, None) else {
+            panic!("a jump is no root")
+        };
+        assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");
+        assert!(step.0.get() < 200, "{} evaluations", step.0.get());
+    }
+
+    /// A plane whose equation is squared, at x = 1/3, and the number of times that it was evaluated.
+    struct Squared(Cell<usize>);
+
+    impl Equation for Squared {
+        fn value<N: Scalar>(&self, [x, y, _]: [N; 3]) -> N {
+            self.0.set(self.0.get() + 1);
+            (x - N::constant(1.0) / N::constant(3.0)).powi(2) * (y + N::constant(7.0))
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn a_touch_is_left_in_doubt_after_a_few_pieces() {
+        let squared = Squared(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, 2000, None)
+        else {
+            panic!("no digits tell a touch from a miss")
+        };
+        let third = f256::from(7.0) / f256::from(3.0);
+        assert!(from <= third && third - from < f256::from(1e-30), "{from:?}");
+        assert!(squared.0.get() < 100, "{} evaluations", squared.0.get());
+    }
+
+    #[test]
+    fn many_digits_are_spent_only_where_few_leave_a_hit_in_doubt() {
+        let step = Step(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
+        let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
+        let few = first_hit::<f64>(&step, &line, false, 2000, None);
+        step.0.set(0);
+        let possible = first_possible(few).map(Interval::<f256>::from_f64);
+        let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
+        let found = first_hit::<f256>(&step, &line, false, 2000, possible);
+        assert!(
+            matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 2.3).abs() < 1e-15),
+            "{found:?}"
+        );
+        assert!(step.0.get() < 80, "{} evaluations", step.0.get());
+    }
+
+    /// A formula that is 0 on one side of a plane, and the number of times that it was evaluated.
+    struct Half(Cell<usize>);
+
+    impl Equation for Half {
+        fn value<N: Scalar>(&self, [x, _, _]: [N; 3]) -> N {
+            self.0.set(self.0.get() + 1);
+            x.max(N::constant(0.0))
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn where_a_formula_is_0_all_along_a_piece_it_is_not_cut() {
+        let half = Half(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+        let found = first_hit(&half, &Line { origin, dir }, false, 2000, None);
+        assert!(
+            // The box is a little larger than the extent.
+            matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 1.0).abs() < 1e-11),
+            "{found:?}"
+        );
+        assert!(half.0.get() < 10, "{} evaluations", half.0.get());
+    }
+}

@@ -1,0 +1,65 @@
+//! Colours, and how a surface reflects light.
+
+use crate::interface::{AnyInterface, Medium};
+use glam::DVec3;
+
+/// A colour or a reflectivity: red, green and blue. 1 is as bright as an image can show; there is no upper limit.
+pub type Rgb = DVec3;
+
+/// How a surface reflects light, per channel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Material {
+    /// The reflectivity for ambient light.
+    pub ambient: Rgb,
+    /// The reflectivity for light from the scene's lights, scattered diffusely.
+    pub diffuse: Rgb,
+    /// The mirror reflectivity.
+    pub specular: Rgb,
+    /// The exponent of the specular highlight; 0 for no highlight. Highlights of a transparent material with an
+    /// interface are as strong as the light itself; the strength of others is `specular` times the light.
+    pub shininess: f64,
+    /// The fraction of light that passes through the surface, from 0 to 1.
+    pub transparency: f64,
+    /// How light continues at the surface; `None` if it is transmitted in a straight line, and reflected as `specular`
+    /// says.
+    pub interface: Option<AnyInterface>,
+}
+
+impl Material {
+    /// Returns bounds of the looks between those of two materials; `None` where their diffuse light may be negative.
+    pub fn brightest_with(&self, other: &Self) -> Option<Look> {
+        let is_sound = self.diffuse.min(other.diffuse).min_element() >= 0.0;
+        is_sound.then(|| Look {
+            ambient: self.ambient.abs().max(other.ambient.abs()),
+            diffuse: self.diffuse.max(other.diffuse),
+            specular: self.specular.abs().max(other.specular.abs()),
+        })
+    }
+
+    /// Tells whether lamps show as highlights in the surface, in addition to the light that it scatters. In glass they
+    /// do, whatever it transmits.
+    pub fn glints(&self) -> bool {
+        self.interface.is_some() && self.transparency != 0.0 && self.shininess != 0.0
+    }
+
+    /// Returns the medium that absorbs light behind the surface, if there is one.
+    pub fn medium(&self) -> Option<Medium> {
+        self.interface.as_ref().and_then(|interface| interface.medium())
+    }
+
+    /// Returns how rough the surface is for the rays that continue from it, from 0 to 1.
+    pub fn roughness(&self) -> f64 {
+        self.interface.as_ref().map_or(0.0, |interface| interface.roughness())
+    }
+}
+
+/// A surface's reflectivities, per channel, where they are the same at every point, or bounds of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The reflectivity for ambient light.
+    pub ambient: Rgb,
+    /// The reflectivity for light from the scene's lights, scattered diffusely.
+    pub diffuse: Rgb,
+    /// The mirror reflectivity.
+    pub specular: Rgb,
+}
