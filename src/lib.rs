@@ -21,7 +21,6 @@
 pub use tabray_cli as cli;
 pub use tabray_core::{geometry, glam, output, prelude, query, render, shapes, simd, world};
 pub use tabray_exact as exact;
-pub use tabray_tools as tools;
 
 // Links the entity types, which register themselves.
 use tabray_plugins as _;
@@ -30,4 +29,11 @@ use tabray_plugins as _;
 pub mod scene {
     pub use tabray_core::scene::*;
     pub use tabray_lang::*;
+}
+
+/// Uses of a scene beside its image. A guest's are here where its feature is enabled, and so are its subcommands.
+pub mod tools {
+    #[cfg(feature = "rays")]
+    pub use tabray_rays::{hits, surface_mesh};
+    pub use tabray_tools::*;
 }

@@ -13,7 +13,7 @@ mod diff;
 mod dump;
 mod explain;
 mod farm;
-mod files;
+pub mod files;
 mod film;
 mod fmt;
 #[cfg(feature = "fuzz")]
@@ -23,19 +23,17 @@ pub mod fuzz;
 mod grade;
 mod grammar;
 mod heap;
-mod hits;
 mod list;
 mod lsp;
 mod man;
 mod measuring;
 mod merge;
-mod mesh;
 mod new;
 mod notes;
-mod options;
+pub mod options;
 mod plan;
 mod probe;
-mod process;
+pub mod process;
 mod render;
 mod rendering;
 mod report;
@@ -111,7 +109,7 @@ const EXAMPLES: &str = concat!(
 );
 
 /// Returns the command line, under the name of the running program.
-pub(crate) fn line() -> clap::Command {
+pub fn line() -> clap::Command {
     help::grouped(program::named(command::with_all(Cli::command())))
 }
 

@@ -14,7 +14,7 @@ use tabray_core::query::{Answer, Crossing, ExactRay, Query, Surroundings};
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_core::world::certify::Precision;
-use tabray_tools::hits::answers::code;
+use tabray_rays::hits::answers::code;
 
 /// The number of packets that are answered at a time: enough for all threads, and little memory.
 const TOGETHER: usize = 256;

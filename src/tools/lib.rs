@@ -9,14 +9,12 @@ pub mod contract;
 pub mod debug;
 pub mod diagnosis;
 pub mod grade;
-pub mod hits;
 pub mod identity;
 pub mod navigation;
 pub mod page;
 pub mod pixels;
 pub mod probe;
 pub mod sampling;
-pub mod surface_mesh;
 pub mod threads;
 pub mod verify;
 

@@ -7,7 +7,7 @@ use tabray_core::output::full_range::FullRange;
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::Model;
 use tabray_core::text::{list, short};
-use tabray_tools::surface_mesh::{self, Body, NoBody, NoMesh, mesh};
+use tabray_rays::surface_mesh::{self, Body, NoBody, NoMesh, mesh};
 
 /// The error of an object's mesh, as a fraction of the object's size. Cells near nodes are halved down to it, and a
 /// page has little memory.

@@ -17,6 +17,7 @@ mod farm;
 mod firsthour;
 mod full_range;
 mod grade;
+mod help;
 mod hits;
 mod light;
 mod limits;

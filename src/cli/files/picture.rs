@@ -17,7 +17,9 @@ pub fn read(path: &Path) -> Result<RgbImage, Failure> {
 
 /// An image with bytes or with numbers of full range.
 pub enum Picture {
+    /// With three bytes for each pixel.
     Bytes(RgbImage),
+    /// With three numbers for each pixel.
     FullRange(Rgb32FImage),
 }
 

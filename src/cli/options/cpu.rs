@@ -5,6 +5,7 @@ use crate::process::failure::Failure;
 use tabray_core::simd::cpu::{Cpu, Level};
 use tabray_core::text::Named;
 
+/// The level of CPU instructions.
 #[derive(clap::Args)]
 #[group(id = "instructions")]
 #[command(next_help_heading = "Speed")]

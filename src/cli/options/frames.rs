@@ -13,6 +13,7 @@ const MAX_FRAME: u32 = 999_999;
 /// The minimum number of digits in the name of a frame.
 const DIGITS: usize = 4;
 
+/// The frames that are rendered, and what changes from one to the next.
 #[derive(clap::Args)]
 #[group(id = "which frames")]
 #[command(next_help_heading = "Parts and frames")]

@@ -3,6 +3,7 @@
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 
+/// Whether everything is traced.
 #[derive(clap::Args)]
 #[group(id = "what is left out")]
 #[command(next_help_heading = "Speed")]

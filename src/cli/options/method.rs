@@ -6,6 +6,7 @@ use tabray_core::scene::choice::{Choice, ChoiceName};
 use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
 
+/// How hits are computed.
 #[derive(clap::Args)]
 #[group(id = "how exactly")]
 #[command(next_help_heading = "Method")]

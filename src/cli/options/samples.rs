@@ -11,6 +11,7 @@ use tabray_core::world::sensor::{Adaptive, Sensor};
 /// The numbers of samples per pixel that `--max-error` chooses from, where `--samples` does not say.
 const BY_ERROR: [u32; 2] = [4, 4096];
 
+/// How many samples pixels take, and where.
 #[derive(clap::Args)]
 #[group(id = "how many samples")]
 #[command(next_help_heading = "Samples")]

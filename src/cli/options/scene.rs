@@ -8,12 +8,14 @@ use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
 
+/// A scene, and what is set in it.
 #[derive(clap::Args)]
 #[group(skip)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     #[arg(value_name = "SCENE")]
     pub path: PathBuf,
+    /// What is set in it.
     #[command(flatten)]
     pub set: set::Args,
 }

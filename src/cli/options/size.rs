@@ -11,6 +11,7 @@ use tabray_core::world::sensor::Sensor;
 /// The maximum width and the maximum height in pixels, as for `pixeldim`.
 const MAX_SIDE: usize = 100_000;
 
+/// The size of the image, and the part of it that is rendered.
 #[derive(clap::Args)]
 #[group(id = "how large")]
 #[command(next_help_heading = "Image")]

@@ -32,6 +32,7 @@ const NOT_BEGUN: &str = "nothing has been rendered yet, and nothing is written";
 /// The message if the program ends while an image is not finished.
 const NOT_FINISHED: &str = "the image was not finished";
 
+/// The limits of time and memory.
 #[derive(clap::Args)]
 #[group(id = "when to stop")]
 #[command(next_help_heading = "Limits")]
@@ -212,6 +213,10 @@ impl Args {
     }
 }
 
+/// Reads a time, such as `90s` or `1.5h`.
+///
+/// # Errors
+/// A message for people, if the text is no time above 0.
 pub fn time(text: &str) -> Result<Duration, String> {
     let time = humantime::parse_duration(text).ok().filter(|time| !time.is_zero());
     time.ok_or_else(|| "give a time above 0 and its unit, as `90s`, `5m` or `1.5h`".to_owned())

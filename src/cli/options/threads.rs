@@ -6,6 +6,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TILE;
 use tabray_tools::threads::renderer_with;
 
+/// The number of threads.
 #[derive(clap::Args, Clone, Copy)]
 #[group(skip)]
 pub struct Args {

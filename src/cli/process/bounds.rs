@@ -6,6 +6,7 @@ use bytesize::ByteSize;
 use std::path::PathBuf;
 use tabray_core::{files, text};
 
+/// The files and the memory that a command may use.
 #[derive(clap::Args)]
 #[group(skip)]
 #[command(next_help_heading = "Limits")]

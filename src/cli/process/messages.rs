@@ -23,9 +23,12 @@ pub enum Form {
 /// Which messages are printed.
 #[derive(Clone, Copy, Default, PartialEq)]
 pub enum Told {
+    /// All of them.
     #[default]
     All,
+    /// Errors and warnings.
     ErrorsAndWarnings,
+    /// Errors alone.
     Errors,
 }
 

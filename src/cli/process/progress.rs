@@ -69,6 +69,7 @@ pub struct Progress {
 }
 
 impl Progress {
+    /// Begins with nothing of this many steps done.
     pub fn new(steps: usize) -> Self {
         let style = ProgressStyle::with_template("{msg}{wide_bar} {percent:>3} % {eta} left");
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
@@ -102,6 +103,7 @@ impl Progress {
         self.bar.inc_length(steps as u64);
     }
 
+    /// Counts a step as done.
     pub fn step(&self) {
         self.advance(1);
     }
@@ -126,6 +128,7 @@ impl Progress {
         self.bar.inc(steps as u64);
     }
 
+    /// Takes the bar away.
     pub fn end(&self) {
         if Self::is_for_programs() && !self.bar.is_finished() {
             self.tell();

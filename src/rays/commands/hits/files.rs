@@ -1,15 +1,15 @@
 //! The files of rays and of answers.
 
-use crate::files::input::is_standard;
-use crate::files::paths::open_stream;
-use crate::process::failure::Failure;
-use crate::process::messages;
+use tabray_cli::files::input::is_standard;
+use tabray_cli::files::paths::open_stream;
+use tabray_cli::process::failure::Failure;
+use tabray_cli::process::messages;
 use clap::ValueEnum;
 use std::io::{self, BufReader, IsTerminal, Read};
 use std::path::Path;
 use tabray_core::text;
-use tabray_tools::hits::answers::AnswerFormat;
-use tabray_tools::hits::rays::{BadRay, Input};
+use crate::hits::answers::AnswerFormat;
+use crate::hits::rays::{BadRay, Input};
 
 /// The format on standard output.
 #[derive(Clone, Copy, ValueEnum)]

@@ -5,12 +5,12 @@ pub mod hard;
 pub mod judge;
 mod model;
 
-use crate::command::{Command, Group, Run};
-use crate::files::output::{self, Output};
-use crate::options::{method, set, threads};
-use crate::process::failure::Failure;
-use crate::process::interrupt::{self, InterruptAction};
-use crate::process::progress::Progress;
+use tabray_cli::{Command, Group, Run};
+use tabray_cli::files::output::{self, Output};
+use tabray_cli::options::{method, set, threads};
+use tabray_cli::process::failure::Failure;
+use tabray_cli::process::interrupt::{self, InterruptAction};
+use tabray_cli::process::progress::Progress;
 use clap::ValueEnum;
 use files::{To, name, of_name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
 use std::io::{self, BufWriter, Write};
@@ -18,9 +18,9 @@ use std::path::{Path, PathBuf};
 use tabray_core::query::Query;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
-use tabray_tools::hits::answers::AnswerFormat;
-use tabray_tools::hits::rays::{RayFormat, RayReader};
-use tabray_tools::hits::{self, Asked, Ended, Tally};
+use crate::hits::answers::AnswerFormat;
+use crate::hits::rays::{RayFormat, RayReader};
+use crate::hits::{self, Asked, Ended, Tally};
 
 /// Answer what rays hit first, each with a proof
 ///

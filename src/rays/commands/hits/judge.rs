@@ -2,11 +2,11 @@
 
 use super::files::{name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
 use super::model;
-use crate::command::{Command, Group, Run};
-use crate::files::output::{self, Output, format_by_name};
-use crate::options::{set, threads};
-use crate::process::failure::{Failure, print};
-use crate::process::interrupt::{self, InterruptAction};
+use tabray_cli::{Command, Group, Run};
+use tabray_cli::files::output::{self, Output, format_by_name};
+use tabray_cli::options::{set, threads};
+use tabray_cli::process::failure::{Failure, print};
+use tabray_cli::process::interrupt::{self, InterruptAction};
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt::Write;
@@ -19,9 +19,9 @@ use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::camera::Projected;
 use tabray_lang::reader::UNUSED_CAMERA;
 use tabray_lang::registry::Registry;
-use tabray_tools::hits::answers;
-use tabray_tools::hits::judge::{self, Finding, Judged, Report};
-use tabray_tools::hits::theirs::TheirReader;
+use crate::hits::answers;
+use crate::hits::judge::{self, Finding, Judged, Report};
+use crate::hits::theirs::TheirReader;
 
 /// Judge the answers of another ray tracer
 ///

@@ -1,0 +1,4 @@
+//! The subcommands: `hits`, `judge`, `hard` and `mesh`.
+
+mod hits;
+mod mesh;
