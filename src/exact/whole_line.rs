@@ -5,10 +5,14 @@ use crate::formula::rational::Rational;
 use crate::interval::Wide;
 use crate::roots::whole::Dyadic;
 use dashu_int::IBig;
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 /// The maximum number of bits between the smallest and the largest coordinate: those of `f64` have 2100.
 const MOST_BITS: i64 = 1 << 13;
+
+/// Exponents are multiples of this number, so that most points have one in common.
+const EXPONENT_STEP: i64 = 32;
 
 /// A line of fractions, scaled to integers.
 #[derive(Clone, Debug)]
@@ -17,7 +21,7 @@ pub struct WholeLine {
     dir: [IBig; 3],
     /// The axis along which the direction is largest.
     along: usize,
-    /// A coordinate times this number, over two to the power `exponent`, is an integer.
+    /// A coordinate of the start times this number, over two to the power `exponent`, is an integer.
     factor: IBig,
     exponent: i64,
     /// A component of the direction times this number, over two to the power `dir_exponent`, is an integer.
@@ -32,6 +36,22 @@ pub struct Seen {
     from_start: [IBig; 3],
     /// The coordinates across the line, after a shear that makes the line an axis.
     across: [IBig; 2],
+    /// The exponent of both, at most that of the line's start.
+    exponent: i64,
+}
+
+impl Seen {
+    /// Returns the point with another exponent, which is no larger.
+    fn scaled(&self, exponent: i64) -> Cow<'_, Self> {
+        let more = (self.exponent - exponent) as usize;
+        if more == 0 {
+            return Cow::Borrowed(self);
+        }
+        let Self { from_start, across, .. } = self;
+        let (from_start, across) =
+            (from_start.each_ref().map(|of| of << more), across.each_ref().map(|of| of << more));
+        Cow::Owned(Self { from_start, across, exponent })
+    }
 }
 
 /// The place where a line crosses a triangle, beyond the line's start.
@@ -70,34 +90,44 @@ impl Ord for Crossing {
 }
 
 impl WholeLine {
-    /// Prepares a line, given its start and its direction, for triangles with these coordinates. Returns `None` for a
-    /// line without a direction, and if the numbers are of too different magnitudes.
-    pub fn new([origin, dir]: &[[Rational; 3]; 2], coordinates: impl Iterator<Item = f64>) -> Option<Self> {
-        let lowest = coordinates.map(|at| Dyadic::from(at).exponent).min();
-        let (origin, factor, exponent) = whole(origin, lowest)?;
-        let (dir, dir_factor, dir_exponent) = whole(dir, None)?;
+    /// Prepares a line, given its start and its direction. Returns `None` for a line without a direction, and if the
+    /// numbers are of too different magnitudes.
+    pub fn new([origin, dir]: &[[Rational; 3]; 2]) -> Option<Self> {
+        let (origin, factor, exponent) = whole(origin, EXPONENT_STEP)?;
+        let (dir, dir_factor, dir_exponent) = whole(dir, 1)?;
         let size = |axis: &usize| if sign(&dir[*axis]).is_lt() { -&dir[*axis] } else { dir[*axis].clone() };
         let along = (0..3).max_by_key(size).filter(|axis| !dir[*axis].is_zero())?;
         Some(Self { origin, dir, along, factor, exponent, dir_factor, dir_exponent })
     }
 
-    /// Returns a point as it is seen along the line. Its coordinates are among those that the line was prepared for.
-    pub fn seen(&self, at: [f64; 3]) -> Seen {
+    /// Returns a point as it is seen along the line; `None` if its numbers and those of the line are of too different
+    /// magnitudes.
+    pub fn seen(&self, at: [f64; 3]) -> Option<Seen> {
+        let parts = at.map(Dyadic::from);
+        let exponents = parts.each_ref().map(|part| part.exponent);
+        let exponent = exponents.iter().map(|of| stepped(*of, EXPONENT_STEP)).fold(self.exponent, i64::min);
+        let finer = self.exponent - exponent;
+        if exponents.iter().map(|of| of - exponent).fold(finer, i64::max) > MOST_BITS {
+            return None;
+        }
         let place = |axis: usize| {
-            let Dyadic { digits, exponent } = at[axis].into();
-            (digits << (exponent - self.exponent).max(0) as usize) * &self.factor - &self.origin[axis]
+            let scaled = &parts[axis].digits << (exponents[axis] - exponent) as usize;
+            scaled * &self.factor - (&self.origin[axis] << finer as usize)
         };
         let (from_start, along) = ([place(0), place(1), place(2)], self.along);
         let across = [1, 2].map(|next| {
             let axis = (along + next) % 3;
             &from_start[axis] * &self.dir[along] - &from_start[along] * &self.dir[axis]
         });
-        Seen { from_start, across }
+        Some(Seen { from_start, across, exponent })
     }
 
     /// Returns where the line crosses a triangle, whose edges belong to it. A line in the plane of the triangle does
     /// not cross it.
     pub fn crossing(&self, corners: [&Seen; 3]) -> Option<Crossing> {
+        let exponent = corners.iter().map(|corner| corner.exponent).fold(self.exponent, i64::min);
+        let scaled = corners.map(|corner| corner.scaled(exponent));
+        let corners = scaled.each_ref().map(|corner| &**corner);
         let [a, b, c] = corners;
         let edges = [[b, c], [c, a], [a, b]];
         // Each is the triple product of the edge's ends and the direction, times the direction's largest component.
@@ -118,6 +148,8 @@ impl WholeLine {
         if enters {
             (numerator, denominator) = (-numerator, -denominator);
         }
+        // The places of all crossings count in the unit of the line's start.
+        denominator <<= (self.exponent - exponent) as usize;
         let moved = |[from, to]: [&Seen; 2], side: Ordering| match side {
             Ordering::Equal => self.moved(from, to),
             _ if sign(&self.dir[self.along]).is_lt() => side.reverse(),
@@ -149,20 +181,25 @@ impl WholeLine {
     }
 }
 
-/// Returns a vector as integers, and the factor and the exponent that make them. The exponent is at most `lowest`.
-fn whole(of: &[Rational; 3], lowest: Option<i64>) -> Option<([IBig; 3], IBig, i64)> {
+/// Returns a vector as integers, and the factor and the exponent that make them. The exponent is a multiple of `step`.
+fn whole(of: &[Rational; 3], step: i64) -> Option<([IBig; 3], IBig, i64)> {
     let parts = of.each_ref().map(Rational::fraction);
     let factor = parts.iter().fold(IBig::ONE, |factor, (_, _, below)| match factor == **below {
         true => factor,
         false => factor * *below,
     });
-    let lowest = parts.iter().map(|(_, exponent, _)| *exponent).chain(lowest).min()?;
+    let lowest = parts.iter().map(|(_, exponent, _)| stepped(*exponent, step)).min()?;
     if parts.iter().any(|(_, exponent, _)| exponent - lowest > MOST_BITS) {
         return None;
     }
     let whole =
         parts.map(|(above, exponent, below)| (above << (exponent - lowest) as usize) * (&factor / below));
     Some((whole, factor, lowest))
+}
+
+/// Returns the largest multiple of a step that is no larger than an exponent.
+fn stepped(exponent: i64, step: i64) -> i64 {
+    exponent.div_euclid(step) * step
 }
 
 fn sign(of: &IBig) -> Ordering {
@@ -179,8 +216,8 @@ mod tests {
 
     fn crossing(origin: Vector, dir: Vector, corners: [Vector; 3]) -> Option<(Crossing, Wide)> {
         let line = [origin, dir].map(|of| of.map(Rational::from));
-        let line = WholeLine::new(&line, corners.as_flattened().iter().copied()).expect("a line");
-        let seen = corners.map(|corner| line.seen(corner));
+        let line = WholeLine::new(&line).expect("a line");
+        let seen = corners.map(|corner| line.seen(corner).expect("a point"));
         let crossing = line.crossing(seen.each_ref())?;
         let t = line.t(&crossing);
         Some((crossing, t))
@@ -213,6 +250,23 @@ mod tests {
         assert!(behind.is_some_and(|(behind, at)| !behind.enters && at.low == at.high));
     }
 
+    /// Coordinates of all magnitudes are scaled to different integers. The places along the line are the same.
+    #[test]
+    fn places_of_triangles_of_all_magnitudes_are_compared() {
+        let line = [[0.0, 0.0, 3.0], [0.0, 0.0, -2.0]].map(|of: Vector| of.map(Rational::from));
+        let line = WholeLine::new(&line).expect("a line");
+        let crossing = |size: f64, height: f64| {
+            let corners = [[size, size, height], [-size, 0.0, height], [0.0, -size, height]];
+            let seen = corners.map(|corner| line.seen(corner).expect("a point"));
+            line.crossing(seen.each_ref()).expect("a crossing")
+        };
+        let [one, tiny, large] = [1.0, 5e-324, 1e300].map(|size| crossing(size, 0.5));
+        assert!(one == tiny && one == large && tiny == large);
+        assert!([&one, &tiny, &large].into_iter().all(|at| line.t(at) == Wide::constant(1.25)));
+        let behind = crossing(3e-200, 0.5_f64.next_down());
+        assert!(one < behind && tiny < behind && large < behind);
+    }
+
     /// A line moved off a corner crosses one of the triangles around it, from whichever side it comes.
     #[test]
     fn beside_a_corner_one_triangle_is_crossed() {
@@ -222,8 +276,9 @@ mod tests {
         for dir in [[0.25, 0.5, -1.0], [0.0, 0.0, 1.0], [-0.5, 0.0, 2.0], [0.125, -0.25, -4.0]] {
             let start: Vector = [0, 1, 2].map(|axis| top[axis] - dir[axis]);
             let line = [start, dir].map(|of| of.map(Rational::from));
-            let line = WholeLine::new(&line, around.into_iter().chain([top]).flatten()).expect("a line");
-            let (top, around) = (line.seen(top), around.map(|at| line.seen(at)));
+            let line = WholeLine::new(&line).expect("a line");
+            let seen = |at| line.seen(at).expect("a point");
+            let (top, around) = (seen(top), around.map(seen));
             let fan = (0..5).map(|at| [&top, &around[at], &around[(at + 1) % 5]]);
             let found: Vec<_> = fan.filter_map(|triangle| line.crossing(triangle)).collect();
             assert_eq!(found.len(), 5, "{dir:?}");

@@ -14,6 +14,11 @@ use tabray_world::geometry::sight::Line;
 /// A face that a line may hit: the minimum t of its first hit, the enclosure of that hit, and the face.
 pub(super) type Met<F> = ((F, HitEnclosure<F>), usize);
 
+/// All faces that a line may hit matter, wherever it does.
+pub(super) fn everywhere<F: Precise>(_: HitEnclosure<F>) -> f64 {
+    f64::INFINITY
+}
+
 impl Surface {
     /// Returns the enclosure of a line's first hit with t > 0, and the hit face. `leaves` is the face that the line's
     /// exact start lies on.
@@ -34,7 +39,15 @@ impl Surface {
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
     ) -> (HitEnclosure<F>, usize) {
-        let met = self.met::<A, F>(line, |face| leaves == Some(face), true);
+        // Behind a place where there may be a hit, none is certainly the first.
+        let end = |found: HitEnclosure<F>| match found {
+            HitEnclosure::Hits(at) => at.coarse().high,
+            HitEnclosure::Edge(Interval { low, .. }) | HitEnclosure::Doubtful(low) => {
+                Interval::point(low).coarse().high
+            }
+            HitEnclosure::Misses => f64::INFINITY,
+        };
+        let met = self.met::<A, F>(line, |face| leaves == Some(face), end);
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
         let Some(((low, first), face)) = first else { return (HitEnclosure::Misses, 0) };
         let HitEnclosure::Hits(at) = first else { return (HitEnclosure::Doubtful(low), face) };
@@ -69,11 +82,11 @@ impl Surface {
     ) -> Vec<(HitEnclosure<F>, usize)> {
         if F::IS_LONG
             && leaves.is_none()
-            && let Some(found) = self.all_exactly::<A, F>(line)
+            && let Some(found) = self.all_exactly(line)
         {
             return found;
         }
-        let mut met = self.met::<A, F>(line, |face| leaves == Some(face), false);
+        let mut met = self.met::<A, F>(line, |face| leaves == Some(face), everywhere);
         met.sort_by(|((one, _), _), ((other, _), _)| one.partial_cmp(other).unwrap_or(Ordering::Equal));
         let (mut all, mut left) = (Vec::new(), &met[..]);
         while let Some(((low, found), face)) = left.first() {
@@ -90,13 +103,13 @@ impl Surface {
     }
 
     /// Returns the faces that a line may hit, each with the enclosure of its first hit and the minimum t of that hit.
-    /// `is_left` tells whether the line's exact start lies in the plane of a face. If `only_first`, faces behind a
-    /// certain hit may be omitted.
+    /// `is_left` tells whether the line's exact start lies in the plane of a face. `end_at` returns the t beyond which
+    /// faces no longer matter, given what is known of a face; they may be omitted.
     pub(super) fn met<A: Bounded, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         is_left: impl Fn(usize) -> bool,
-        only_first: bool,
+        end_at: impl Fn(HitEnclosure<F>) -> f64,
     ) -> Vec<Met<F>> {
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
         let (mut met, mut end) = (Vec::new(), f64::INFINITY);
@@ -107,9 +120,7 @@ impl Surface {
                 found @ (HitEnclosure::Hits(at) | HitEnclosure::Edge(at)) => (at.low, found),
                 found @ HitEnclosure::Doubtful(low) => (low, found),
             };
-            if let (true, HitEnclosure::Hits(at)) = (only_first, found.1) {
-                end = end.min(at.coarse().high);
-            }
+            end = end.min(end_at(found.1));
             met.push((found, face));
             end
         });
@@ -136,7 +147,7 @@ impl Surface {
         });
         // The point on the face is at t = 1.
         let (nearly, toward) = (F::of(1.0 - 256.0 * f64::EPSILON), Line { origin: line.origin, dir: way });
-        let met = self.met::<A, F>(&toward, |face| leaves == Some(face), false);
+        let met = self.met::<A, F>(&toward, |face| leaves == Some(face), |_| 1.0);
         if met.iter().any(|((_, found), _)| matches!(found, HitEnclosure::Hits(at) if at.high < nearly)) {
             return Some(true);
         }

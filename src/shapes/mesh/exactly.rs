@@ -2,7 +2,9 @@
 //! digits than others that way.
 
 use super::surface::Surface;
+use glam::DVec3;
 use tabray_exact::interval::{Interval, Wide};
+use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 use tabray_exact::whole_line::{Crossing, Seen, WholeLine};
 use tabray_world::accuracy::Bounded;
 use tabray_world::certify::{HitEnclosure, Precise, exact_line};
@@ -23,9 +25,9 @@ impl ExactCrossings {
 }
 
 impl Surface {
-    /// Returns the faces that a line crosses with t > 0; `None` if its numbers are no fractions. If `only_first`, faces
-    /// behind a certain hit may be omitted.
-    pub(super) fn exact_crossings<A: Bounded, F: Precise>(
+    /// Returns the faces that a line crosses with t > 0; `None` if its numbers are no fractions, or of too different
+    /// magnitudes. If `only_first`, faces behind the first may be omitted.
+    pub(super) fn exact_crossings<F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         only_first: bool,
@@ -33,32 +35,35 @@ impl Surface {
         let fine = Line { origin: line.origin.map(F::widen), dir: line.dir.map(F::widen) };
         let exact = exact_line(&fine)?;
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
-        let mut met = self.met::<A, f64>(&coarse, |_| false, only_first);
-        if only_first {
-            let end = met.iter().filter_map(|((_, found), _)| match found {
-                HitEnclosure::Hits(at) => Some(at.high),
-                _ => None,
-            });
-            let end = end.fold(f64::INFINITY, f64::min);
-            met.retain(|((low, _), _)| *low <= end);
-        }
-        let coordinates = met.iter().flat_map(|(_, face)| self.corners(*face)).flat_map(|at| at.to_array());
-        let line = WholeLine::new(&exact, coordinates)?;
-        let mut seen: Vec<(u32, Seen)> = Vec::with_capacity(8);
-        let mut faces = Vec::with_capacity(met.len());
-        for (_, face) in met {
+        let line = WholeLine::new(&exact)?;
+        let (mut seen, mut faces): (Vec<(u32, Seen)>, Vec<(Crossing, usize)>) =
+            (Vec::with_capacity(8), Vec::with_capacity(8));
+        let (mut end, mut is_known) = (f64::INFINITY, true);
+        self.tree.along(&coarse, &mut |face| {
+            if is_missed(&coarse, self.corners(face)) {
+                return end;
+            }
             let places = self.faces[face].map(|vertex| {
-                let known = seen.iter().position(|(other, _)| *other == vertex);
-                known.unwrap_or_else(|| {
-                    seen.push((vertex, line.seen(self.vertices[vertex as usize].to_array())));
-                    seen.len() - 1
+                // Neighbouring faces come one after the other.
+                seen.iter().rposition(|(other, _)| *other == vertex).or_else(|| {
+                    seen.push((vertex, line.seen(self.vertices[vertex as usize].to_array())?));
+                    Some(seen.len() - 1)
                 })
             });
-            let crossing = line.crossing(places.map(|place| &seen[place].1));
-            faces.extend(crossing.map(|crossing| (crossing, face)));
-        }
+            let [Some(a), Some(b), Some(c)] = places else {
+                is_known = false;
+                return f64::NEG_INFINITY;
+            };
+            if let Some(crossing) = line.crossing([a, b, c].map(|place| &seen[place].1)) {
+                if only_first && faces.iter().all(|(other, _)| crossing < *other) {
+                    end = line.t(&crossing).coarse().high;
+                }
+                faces.push((crossing, face));
+            }
+            end
+        });
         faces.sort_by(|(one, _), (other, _)| one.cmp(other));
-        Some(ExactCrossings { line, faces })
+        is_known.then_some(ExactCrossings { line, faces })
     }
 
     /// Returns the enclosure of a line's first hit with t > 0, and the hit face, like
@@ -67,7 +72,7 @@ impl Surface {
         &self,
         line: &Line<Interval<F>>,
     ) -> Option<(HitEnclosure<F>, usize)> {
-        let crossings = self.exact_crossings::<A, F>(line, true)?;
+        let crossings = self.exact_crossings::<F>(line, true)?;
         let Some((at, here)) = crossings.places().next() else { return Some((HitEnclosure::Misses, 0)) };
         let hit = HitEnclosure::Hits(F::narrow(at.into()));
         if let [(_, face)] = here {
@@ -97,11 +102,11 @@ impl Surface {
     /// Returns what is proven about each of a line's hits with t > 0, and the hit faces, like
     /// [`all_along`](Self::all_along); `None` if the line's numbers are no fractions. At an edge or a corner of a closed
     /// mesh, a line that crosses the surface does so once. It is open whether one that touches it does.
-    pub(super) fn all_exactly<A: Bounded, F: Precise>(
+    pub(super) fn all_exactly<F: Precise>(
         &self,
         line: &Line<Interval<F>>,
     ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
-        let crossings = self.exact_crossings::<A, F>(line, false)?;
+        let crossings = self.exact_crossings::<F>(line, false)?;
         let mut all = Vec::new();
         for (at, here) in crossings.places() {
             let at = F::narrow(at.into());
@@ -120,4 +125,20 @@ impl Surface {
         }
         Some(all)
     }
+}
+
+/// Tells whether a line certainly does not cross a triangle: it passes the edges on different sides, or lies in the
+/// plane of the triangle, across an axis.
+fn is_missed(line: &Line<Interval>, corners: [DVec3; 3]) -> bool {
+    let is_level = |axis: usize| {
+        let is_there = |corner: &DVec3| line.origin[axis] == Interval::constant(corner[axis]);
+        line.dir[axis].is_zero() && corners.iter().all(is_there)
+    };
+    if (0..3).any(is_level) {
+        return true;
+    }
+    let [a, b, c] =
+        corners.map(|corner| per_axis(|axis| Interval::constant(corner[axis]) - line.origin[axis]));
+    let sides = [[a, b], [b, c], [c, a]].map(|[from, to]| dot(cross(from, to), line.dir));
+    sides.iter().any(|side| side.low > 0.0) && sides.iter().any(|side| side.high < 0.0)
 }

@@ -8,7 +8,7 @@
 //! The faces of most meshes are exactly the boundary of the inside. For other meshes, the winding number before each
 //! face is computed.
 
-use super::along::Met;
+use super::along::{Met, everywhere};
 use super::face::Face;
 use super::surface::{Depth, Surface};
 use super::winding::DIRECTIONS;
@@ -51,7 +51,7 @@ impl Surface {
     fn number_at<F: Precise>(&self, at: DVec3) -> Option<i32> {
         let origin = constants::<Interval<F>>(at);
         let mut lines = directions().map(|dir| Line { origin, dir: constants(dir) });
-        lines.find_map(|line| self.winding(&line, &self.met::<Exact, F>(&line, |_| false, false)))
+        lines.find_map(|line| self.winding(&line, &self.met::<Exact, F>(&line, |_| false, everywhere)))
     }
 
     fn find_depths(&self) -> Option<Arc<[Depth]>> {
@@ -83,7 +83,9 @@ impl Surface {
         let outward = |dir: &DVec3| dot(constants(*dir), normal).low > F::of(0.0);
         let mut lines =
             directions().filter(outward).map(|dir| Line { origin, dir: constants::<Interval<F>>(dir) });
-        lines.find_map(|line| self.winding(&line, &self.met::<Exact, F>(&line, |other| other == face, false)))
+        lines.find_map(|line| {
+            self.winding(&line, &self.met::<Exact, F>(&line, |other| other == face, everywhere))
+        })
     }
 
     /// Tells whether a closed mesh is certainly the surface of a star-shaped body: all faces turn their inner sides to
@@ -101,7 +103,7 @@ impl Surface {
         }
         let mut lines =
             directions().map(|dir| Line { origin: constants::<Interval<f64>>(middle), dir: constants(dir) });
-        lines.find_map(|line| self.winding(&line, &self.met::<Exact, f64>(&line, |_| false, false)))
+        lines.find_map(|line| self.winding(&line, &self.met::<Exact, f64>(&line, |_| false, everywhere)))
             == Some(1)
     }
 

@@ -4,7 +4,7 @@
 //! outer side.
 
 use super::Boundary;
-use crate::mesh::along::{Met, together};
+use crate::mesh::along::{Met, everywhere, together};
 use std::cmp::Ordering;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
@@ -53,7 +53,7 @@ impl<A: Bounded> Boundary<A> {
     ) -> (HitEnclosure<F>, usize) {
         let surface = &self.mesh.surface;
         let is_left = |face| leaves.is_some_and(|part| self.are_in_plane(part >> 1, face));
-        let mut met = surface.met::<A, F>(line, is_left, false);
+        let mut met = surface.met::<A, F>(line, is_left, everywhere);
         if met.is_empty() {
             return (HitEnclosure::Misses, 0);
         }
