@@ -13,7 +13,8 @@ use tabray_exact::dual::Dual;
 use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::{cross, dot};
 use tabray_world::certify::{
-    Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precision, Premise, ProofMethods, coarse,
+    self, Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precision, Premise, ProofMethods,
+    coarse,
 };
 use tabray_world::geometry::ray::Ray;
 use tabray_world::geometry::sight::{Line, Sight};
@@ -163,10 +164,7 @@ impl HitQueries for ParametricShape {
     fn premises(&self, _of: &'static str, _each: &mut dyn FnMut(&'static str, Premise)) {}
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        match precision {
-            Precision::Double => HitProofs::<f64>::first_hit(self, &sight.line(), None).0.into(),
-            Precision::Octuple => HitProofs::<f256>::first_hit(self, &sight.line(), None).0.into(),
-        }
+        certify::first_part(self, sight, precision).0
     }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {

@@ -1,12 +1,11 @@
 //! The surface of a part of a solid, for single rays.
 
-use f256::f256;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::body::Part;
-use tabray_world::certify::{Enclosure, HitProofs, Precision, Premise, ProofMethods};
+use tabray_world::certify::{self, Enclosure, Precision, Premise, ProofMethods};
 use tabray_world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
@@ -428,16 +427,7 @@ impl HitQueries for SolidPart {
     }
 
     fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-        match precision {
-            Precision::Double => {
-                let (found, part) = HitProofs::<f64>::first_hit(self, &sight.line(), None);
-                (found.into(), part)
-            }
-            Precision::Octuple => {
-                let (found, part) = HitProofs::<f256>::first_hit(self, &sight.line(), None);
-                (found.into(), part)
-            }
-        }
+        certify::first_part(self, sight, precision)
     }
 
     fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {

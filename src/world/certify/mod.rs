@@ -136,6 +136,21 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
     }
 }
 
+/// Returns what is proven about a ray's first hit of a shape, and the part that is hit.
+pub fn first_part(shape: &dyn ProofMethods, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+    fn found<F: Precise>(shape: &dyn ProofMethods, sight: &Sight) -> (Enclosure, usize)
+    where
+        Enclosure: From<HitEnclosure<F>>,
+    {
+        let (found, part) = F::proofs(shape).first_hit(&sight.line(), None);
+        (found.into(), part)
+    }
+    match precision {
+        Precision::Double => found::<f64>(shape, sight),
+        Precision::Octuple => found::<f256>(shape, sight),
+    }
+}
+
 /// Returns what a bounding box says about a line's first hit of a shape without an equation: nothing nearer than the
 /// box, and nothing where the line misses it.
 pub(crate) fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEnclosure<f64> {

@@ -10,13 +10,12 @@ use super::passages::{Turn, winding};
 use super::shape::{Mesh, RAYS_PER_SEARCH};
 use super::surface::{Depth, Surface};
 use super::winding::DIRECTIONS;
-use f256::f256;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_world::accuracy::{Accuracy, Bounded, Exact, Strict};
 use tabray_world::any_shape::AnyShape;
-use tabray_world::certify::{Assumption, Enclosure, HitProofs, Precision, Premise, ProofMethods};
+use tabray_world::certify::{self, Assumption, Enclosure, Precision, Premise, ProofMethods};
 use tabray_world::coincidence::{CLOSE, ROUNDING, close};
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
@@ -224,16 +223,7 @@ impl<A: Bounded> HitQueries for Boundary<A> {
     }
 
     fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-        match precision {
-            Precision::Double => {
-                let (found, part) = HitProofs::<f64>::first_hit(self, &sight.line(), None);
-                (found.into(), part)
-            }
-            Precision::Octuple => {
-                let (found, part) = HitProofs::<f256>::first_hit(self, &sight.line(), None);
-                (found.into(), part)
-            }
-        }
+        certify::first_part(self, sight, precision)
     }
 
     fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {
