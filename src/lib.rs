@@ -22,8 +22,21 @@ pub use tabray_cli as cli;
 pub use tabray_core::{geometry, glam, output, prelude, query, render, shapes, simd, world};
 pub use tabray_exact as exact;
 
-// Links the entity types, which register themselves.
+// Links the entity types and the guests' subcommands, which register themselves.
+#[cfg(feature = "page")]
+use tabray_page as _;
 use tabray_plugins as _;
+#[cfg(feature = "teachers")]
+use tabray_teachers as _;
+
+/// Entries for fuzzing.
+#[cfg(feature = "fuzz")]
+#[doc(hidden)]
+pub mod fuzz {
+    pub use tabray_cli::fuzz::Image;
+    pub use tabray_page::fuzz::{Server, watch};
+    pub use tabray_teachers::fuzz::review;
+}
 
 /// Scenes: the tables of entity types, the model that a scene becomes, and the language in which it is written.
 pub mod scene {
@@ -31,7 +44,7 @@ pub mod scene {
     pub use tabray_lang::*;
 }
 
-/// Uses of a scene beside its image. A guest's are here where its feature is enabled, and so are its subcommands.
+/// Uses of a scene beside its image, with those of the guests that are enabled.
 pub mod tools {
     #[cfg(feature = "rays")]
     pub use tabray_rays::{hits, surface_mesh};

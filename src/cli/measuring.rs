@@ -83,6 +83,7 @@ impl Work {
         Self { progress, time: Time::within(limit), units, kept }
     }
 
+    /// Takes the bar away.
     pub fn end(&self) {
         self.progress.end();
     }

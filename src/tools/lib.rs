@@ -1,4 +1,4 @@
-//! Tools that use a model for more than rendering: charts, benchmarks, contracts, proofs, movements of the camera.
+//! Tools that use a model for more than rendering: charts, benchmarks, contracts and proofs.
 
 pub mod assumptions;
 pub mod bench;
@@ -8,10 +8,7 @@ pub mod colours;
 pub mod contract;
 pub mod debug;
 pub mod diagnosis;
-pub mod grade;
 pub mod identity;
-pub mod navigation;
-pub mod page;
 pub mod pixels;
 pub mod probe;
 pub mod sampling;

@@ -7,8 +7,8 @@ use tabray_core::render::progressive::{Area, Steps};
 use tabray_core::scene::model::Model;
 use tabray_core::world::material::Rgb;
 use tabray_lang::reader;
+use tabray_page::display::singles;
 use tabray_tools::diagnosis;
-use tabray_tools::page::display::singles;
 
 /// A picture: its remaining steps, and its pixels so far.
 #[derive(Default)]

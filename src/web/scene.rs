@@ -13,9 +13,9 @@ use tabray_lang::editor;
 use tabray_lang::reader::{self, Places, ReadOptions, Report};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
-use tabray_tools::page::camera::MoveRequest;
-use tabray_tools::page::display::Display;
-use tabray_tools::page::{Shown, lines, trial_values};
+use tabray_page::camera::MoveRequest;
+use tabray_page::display::Display;
+use tabray_page::{Shown, lines, trial_values};
 
 /// The maximum number of pixels of a picture.
 const MAX_PIXELS: usize = 1 << 22;

@@ -17,7 +17,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
 use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
-use tabray_tools::page::{camera, entities, fields};
+use tabray_page::{camera, entities, fields};
 use tabray_tools::probe;
 
 /// The answer to a request, with a status as in HTTP.

@@ -6,9 +6,9 @@ use std::fs::{self, File};
 use std::io::{BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
-use tabray::cli::fuzz::{Image, Server};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::exact::{Dual, Formula, Interval, Jet, Scalar, Wide};
+use tabray::fuzz::{Image, Server, review, watch};
 use tabray::render::{Plan, Renderer, trace};
 use tabray::scene::editor::{self, Text};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
@@ -502,7 +502,7 @@ pub const TO_REVIEW: [&str; 5] = [
 /// Connects to the server of `tabray watch`, which answers nothing without the token.
 pub fn watch(bytes: &[u8]) {
     thread_local! {
-        static SERVER: Server = Server::watch(*REGISTRY, small(8, 6)).expect("a server");
+        static SERVER: Server = watch(*REGISTRY, small(8, 6)).expect("a server");
     }
     SERVER.with(|server| request(server, bytes, &[]));
 }
@@ -521,7 +521,7 @@ impl Waiting {
         let header = "---\nsource: a.rs\n---\n";
         let files = ["one.snap", "one.snap.new", "two.snap", "two.snap.new"]
             .map(|name| (folder.path().join(name), format!("{header}{name}\n").into_bytes()));
-        let server = Server::review(&REGISTRY, folder.path()).expect("a server");
+        let server = review(&REGISTRY, folder.path()).expect("a server");
         let waiting = Self { folder, server, files: files.into() };
         waiting.restore();
         waiting

@@ -1,6 +1,10 @@
 //! `tabray mesh`: writes an object of a scene as a closed mesh of triangles.
 
-use tabray_cli::{Command, Group, Run};
+use crate::surface_mesh::{Body, Event, Format, NoBody, NoMesh, mesh};
+use glam::DVec3;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use tabray_cli::files::input;
 use tabray_cli::files::output::{self, Output};
 use tabray_cli::options::named::{Value, by_name};
@@ -9,13 +13,9 @@ use tabray_cli::process::failure::Failure;
 use tabray_cli::process::interrupt::{self, InterruptAction};
 use tabray_cli::process::progress::Progress;
 use tabray_cli::process::{memory, messages};
-use glam::DVec3;
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use tabray_cli::{Command, Group, Run};
 use tabray_core::text::{count, list, short, shortest, shown};
 use tabray_lang::registry::Registry;
-use crate::surface_mesh::{Body, Event, Format, NoBody, NoMesh, mesh};
 
 /// How many places are listed.
 const LISTED: usize = 5;

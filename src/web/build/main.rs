@@ -4,7 +4,7 @@
 //! file that works from anywhere. The module is compiled for wasm32-unknown-unknown by the cargo and the rustc that
 //! compiled this program. Only crates are downloaded.
 
-#[path = "../../tools/page/html.rs"]
+#[path = "../../page/html.rs"]
 mod html;
 
 use base64::Engine;

@@ -1,15 +1,15 @@
 //! The files of rays and of answers.
 
+use crate::hits::answers::AnswerFormat;
+use crate::hits::rays::{BadRay, Input};
+use clap::ValueEnum;
+use std::io::{self, BufReader, IsTerminal, Read};
+use std::path::Path;
 use tabray_cli::files::input::is_standard;
 use tabray_cli::files::paths::open_stream;
 use tabray_cli::process::failure::Failure;
 use tabray_cli::process::messages;
-use clap::ValueEnum;
-use std::io::{self, BufReader, IsTerminal, Read};
-use std::path::Path;
 use tabray_core::text;
-use crate::hits::answers::AnswerFormat;
-use crate::hits::rays::{BadRay, Input};
 
 /// The format on standard output.
 #[derive(Clone, Copy, ValueEnum)]

@@ -2,21 +2,21 @@
 
 use super::files::{To, of_name};
 use super::model;
-use tabray_cli::{Command, Group, Run};
+use crate::hits::answers::AnswerFormat;
+use crate::hits::hard;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
 use tabray_cli::files::output::{self, Output};
 use tabray_cli::options::number::whole;
 use tabray_cli::options::{set, threads};
 use tabray_cli::process::failure::Failure;
 use tabray_cli::process::interrupt::{self, InterruptAction};
 use tabray_cli::process::messages;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use tabray_cli::{Command, Group, Run};
 use tabray_core::query::Query;
 use tabray_core::text::count;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
-use crate::hits::answers::AnswerFormat;
-use crate::hits::hard;
 
 /// Write rays that are hard to decide
 ///

@@ -2,15 +2,18 @@
 
 use super::files::{name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
 use super::model;
-use tabray_cli::{Command, Group, Run};
-use tabray_cli::files::output::{self, Output, format_by_name};
-use tabray_cli::options::{set, threads};
-use tabray_cli::process::failure::{Failure, print};
-use tabray_cli::process::interrupt::{self, InterruptAction};
+use crate::hits::answers;
+use crate::hits::judge::{self, Finding, Judged, Report};
+use crate::hits::theirs::TheirReader;
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use tabray_cli::files::output::{self, Output, format_by_name};
+use tabray_cli::options::{set, threads};
+use tabray_cli::process::failure::{Failure, print};
+use tabray_cli::process::interrupt::{self, InterruptAction};
+use tabray_cli::{Command, Group, Run};
 use tabray_core::query::{Answer, Query, Verdict};
 use tabray_core::render::{Plan, Renderer};
 use tabray_core::scene::model::Model;
@@ -19,9 +22,6 @@ use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::camera::Projected;
 use tabray_lang::reader::UNUSED_CAMERA;
 use tabray_lang::registry::Registry;
-use crate::hits::answers;
-use crate::hits::judge::{self, Finding, Judged, Report};
-use crate::hits::theirs::TheirReader;
 
 /// Judge the answers of another ray tracer
 ///

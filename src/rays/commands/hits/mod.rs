@@ -5,22 +5,22 @@ pub mod hard;
 pub mod judge;
 mod model;
 
-use tabray_cli::{Command, Group, Run};
+use crate::hits::answers::AnswerFormat;
+use crate::hits::rays::{RayFormat, RayReader};
+use crate::hits::{self, Asked, Ended, Tally};
+use clap::ValueEnum;
+use files::{To, name, of_name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 use tabray_cli::files::output::{self, Output};
 use tabray_cli::options::{method, set, threads};
 use tabray_cli::process::failure::Failure;
 use tabray_cli::process::interrupt::{self, InterruptAction};
 use tabray_cli::process::progress::Progress;
-use clap::ValueEnum;
-use files::{To, name, of_name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use tabray_cli::{Command, Group, Run};
 use tabray_core::query::Query;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
-use crate::hits::answers::AnswerFormat;
-use crate::hits::rays::{RayFormat, RayReader};
-use crate::hits::{self, Asked, Ended, Tally};
 
 /// Answer what rays hit first, each with a proof
 ///

@@ -1,11 +1,11 @@
 //! The scene that rays are asked of: it needs no camera, and may be the file of a mesh.
 
+use std::path::Path;
 use tabray_cli::files::input::{self, Source};
 use tabray_cli::files::mesh;
 use tabray_cli::options::set;
 use tabray_cli::process::failure::Failure;
 use tabray_cli::process::messages;
-use std::path::Path;
 use tabray_core::scene::model::Model;
 use tabray_core::shapes::mesh::read::Wanted;
 use tabray_core::world::accuracy::Accuracy;
