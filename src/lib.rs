@@ -41,6 +41,8 @@ pub mod fuzz {
 /// Scenes: the tables of entity types, the model that a scene becomes, and the language in which it is written.
 pub mod scene {
     pub use tabray_core::scene::*;
+    #[cfg(feature = "editor")]
+    pub use tabray_editor::{self as editor, grammar, schema};
     pub use tabray_lang::*;
 }
 

@@ -13,15 +13,12 @@ mod dump;
 mod farm;
 pub mod files;
 mod film;
-mod fmt;
 #[cfg(feature = "fuzz")]
 #[doc(hidden)]
 #[path = "../../tests/fuzz/entries.rs"]
 pub mod fuzz;
-mod grammar;
 mod heap;
 mod list;
-mod lsp;
 mod man;
 pub mod measuring;
 mod merge;
@@ -33,7 +30,6 @@ mod probe;
 pub mod process;
 mod render;
 mod rendering;
-mod schema;
 mod verify;
 
 pub use clap;

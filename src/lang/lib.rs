@@ -1,5 +1,5 @@
-//! The scene language: reading a scene's text as a [`Model`](tabray_core::scene::Model), writing it back, documents
-//! generated from the tables of entity types, and answers for an [`editor`].
+//! The scene language: reading a scene's text as a [`Model`](tabray_core::scene::Model), writing it back, and
+//! documents generated from the tables of entity types.
 //!
 //! ```
 //! use std::path::Path;
@@ -23,15 +23,11 @@
 //! [`build`] makes a model without any text. `cargo run -p tabray-lang --example scene` also asks for a ray's hit.
 
 pub mod dump;
-pub mod editor;
-pub mod grammar;
 pub mod import;
-mod json_schema;
 pub mod list_json;
 pub mod reader;
 pub mod reference;
 pub mod registry;
-pub mod schema;
 pub mod syntax;
 
 pub use reader::{Fault, Loaded, Parsed, Place, Report, Severity, build, read};

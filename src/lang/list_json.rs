@@ -4,7 +4,6 @@
 
 use crate::reference::by_name;
 use crate::registry::Registry;
-use crate::schema::Constant;
 use serde::Serialize;
 use std::borrow::Cow;
 use tabray_core::scene::attribute;
@@ -13,7 +12,7 @@ use tabray_core::scene::counts::Counts;
 use tabray_core::scene::entity;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::profile::Profile;
-use tabray_core::scene::value::Type;
+use tabray_core::scene::value::{Datum, Type};
 
 /// The version of the format. It increases if a field is removed or changes its meaning, but not if one is added.
 const VERSION: u32 = 1;
@@ -212,5 +211,52 @@ impl Shader {
     fn of(entity: &'static entity::Entity) -> Self {
         let [number_on_planes, number_on_spheres] = entity.numbers;
         Self { meaning: entity.meaning, name: entity.name, number_on_planes, number_on_spheres }
+    }
+}
+
+/// The default values of an attribute, or one of its allowed values.
+#[derive(Clone, Serialize)]
+#[serde(untagged)]
+pub enum Constant {
+    /// An integer.
+    Whole(i64),
+    /// Several integers.
+    Wholes(Vec<i64>),
+    /// A number.
+    Number(f64),
+    /// Several numbers.
+    Numbers(Vec<f64>),
+    /// A word, a name or a formula.
+    Text(String),
+    /// Yes or no.
+    Truth(bool),
+}
+
+impl Constant {
+    /// Returns the values of an attribute, or `None` if it has none.
+    pub fn of(datum: &Datum) -> Option<Self> {
+        Some(match datum {
+            Datum::Whole(numbers) => match numbers[..] {
+                [number] => Self::Whole(number),
+                _ => Self::Wholes(numbers.clone()),
+            },
+            Datum::Numbers(numbers) => match numbers[..] {
+                [number] => Self::Number(number),
+                _ => Self::Numbers(numbers.clone()),
+            },
+            Datum::Word(word) => Self::Text(word.clone()),
+            Datum::Formula(formula) => Self::Text(formula.to_string()),
+            Datum::Formulas(_) => return None,
+            Datum::Material { name, .. }
+            | Datum::Texture { name, .. }
+            | Datum::Shader { name, .. }
+            | Datum::Object { name, .. } => Self::Text(name.to_string()),
+            Datum::Choice(choice) => {
+                choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
+            }
+            Datum::Truth(truth) => Self::Truth(*truth),
+            // A list of objects cannot be a default.
+            Datum::Objects(_) | Datum::Absent => return None,
+        })
     }
 }

@@ -64,7 +64,7 @@ impl Syntax {
     }
 
     /// Returns the notation of an entity of a type, with its required attributes.
-    pub(crate) fn entity_usage(self, entity: &Entity, name: &str) -> String {
+    pub fn entity_usage(self, entity: &Entity, name: &str) -> String {
         let required = entity.attributes().filter(|attribute| attribute.default().is_none());
         let mut body: Vec<_> = required.map(|attribute| self.usage(attribute)).collect();
         let first = |group: &OneOf| {
@@ -132,7 +132,7 @@ impl Syntax {
     }
 
     /// Writes a word as a value. The notes' syntax needs quotes only if the bare word would be misread.
-    pub(crate) fn word(self, word: &str) -> String {
+    pub fn word(self, word: &str) -> String {
         let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
         let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
         if self == Self::Notes && bare { word.to_owned() } else { quoted(word) }

@@ -9,7 +9,7 @@ use tabray_core::render::trace;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::store::Record;
 use tabray_core::text;
-use tabray_lang::editor::{self, View};
+use tabray_editor::{self as editor, View};
 use tabray_lang::registry::Registry;
 
 /// The state of a camera that is about to be moved.

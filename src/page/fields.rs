@@ -9,7 +9,7 @@ use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::store::Record;
 use tabray_core::scene::value::{Datum, Type};
-use tabray_lang::editor::View;
+use tabray_editor::View;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 

@@ -20,7 +20,7 @@ use std::ops::Range;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
 use tabray_core::scene::model::Model;
-use tabray_lang::editor::{self, Text, View};
+use tabray_editor::{self as editor, Text, View};
 use tabray_lang::reader::Places;
 use tabray_lang::registry::Registry;
 

@@ -2,7 +2,7 @@
 
 use super::Shown;
 use super::fields::{Field, Fields, Named};
-use tabray_lang::editor::{Item, View, Word};
+use tabray_editor::{Item, View, Word};
 use tabray_lang::registry::Registry;
 
 /// The word for numbers in a page's list of entities.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tabray_core::scene::value::Datum;
-use tabray_lang::editor::{self, Text, View, Word};
+use tabray_editor::{self as editor, Text, View, Word};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tabray_lang::editor::{self, CompletionKind, Group, Text};
+use tabray_editor::{self as editor, CompletionKind, Group, Text};
 use tabray_lang::reader::Severity;
 use tabray_lang::registry::Registry;
 

@@ -5,7 +5,7 @@ use crate::text::view as read;
 use serde::Deserialize;
 use serde_json::Value;
 use std::ops::Range;
-use tabray_lang::editor::{self, View};
+use tabray_editor::{self as editor, View};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 

@@ -9,7 +9,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;
 use tabray_core::text::list;
-use tabray_lang::editor;
+use tabray_editor as editor;
 use tabray_lang::reader::{self, Places, ReadOptions, Report};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;

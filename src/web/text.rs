@@ -1,6 +1,6 @@
 //! The text of a scene, which has no file.
 
-use tabray_lang::editor::{self, Text, View};
+use tabray_editor::{self as editor, Text, View};
 use tabray_lang::registry::Registry;
 
 /// The name of the scene in messages.

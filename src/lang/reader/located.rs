@@ -21,7 +21,7 @@ pub struct Located<'r> {
 impl Report<'_> {
     /// Returns each fault with its place, and then the further places that help to understand it. A fault without a
     /// place is at the beginning of the scene.
-    pub(crate) fn located(&self) -> impl Iterator<Item = (&Fault, Vec<Located<'_>>)> {
+    pub fn located(&self) -> impl Iterator<Item = (&Fault, Vec<Located<'_>>)> {
         let parts = self.parts();
         self.faults().iter().map(move |fault| {
             let others = excerpt::others(fault).filter_map(|(place, label)| Some((place.clone()?, label)));

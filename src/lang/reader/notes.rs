@@ -49,7 +49,9 @@ pub enum Node<'a> {
 
 /// A keyword and its words.
 pub struct Statement<'a> {
+    /// The keyword.
     pub keyword: Keyword,
+    /// The keyword's token.
     pub first: Token,
     /// The words after the keyword: a file, a name and a value, or a name and a count. A missing word is reported.
     pub words: [Option<Word<'a>>; 2],
@@ -59,10 +61,11 @@ pub struct Statement<'a> {
 
 /// The parser of a text in the notes' syntax, which returns its parts in order.
 pub struct Grammar<'a, 'r> {
-    pub registry: &'r Registry,
-    pub tokens: Tokens<'a>,
+    pub(super) registry: &'r Registry,
+    pub(super) tokens: Tokens<'a>,
+    /// The faults so far.
     pub report: &'r mut Report<'a>,
-    pub tables: Tables,
+    pub(super) tables: Tables,
     /// Whether the text is a draft. In a draft, a line break ends values before an attribute, an entity ends an
     /// incomplete entity before it, and all values are kept.
     is_draft: bool,
@@ -98,6 +101,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
     }
 
     #[inline]
+    /// Returns the next token.
     pub fn token(&self) -> Option<Token> {
         self.tokens.ahead[0]
     }

@@ -9,15 +9,18 @@ use std::ops::Range;
 
 /// A word of a scene and its place.
 #[derive(Clone, Debug)]
-pub(crate) struct Word<'a> {
+pub struct Word<'a> {
+    /// The word, without quotes.
     pub text: Cow<'a, str>,
+    /// Its type.
     pub form: Form,
+    /// Where it stands.
     pub place: Place,
 }
 
 /// The type of a word according to the syntax.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
+pub enum Form {
     /// Unknown: a word of the notes' syntax may be a number or a name.
     Any,
     /// A number in TOML.
@@ -31,6 +34,7 @@ pub(crate) enum Form {
 }
 
 impl<'a> Word<'a> {
+    /// Makes a word at a place.
     #[inline]
     pub fn at(text: impl Into<Cow<'a, str>>, form: Form, place: Range<usize>) -> Self {
         Self { text: text.into(), form, place: Some(place) }
@@ -66,14 +70,16 @@ pub(crate) const MAX_ATTRIBUTES: usize = 1000;
 /// A parsed entity, before any check.
 #[derive(Clone, Debug)]
 pub struct Parsed<'a> {
-    pub(crate) kind: Word<'a>,
-    pub(crate) name: Word<'a>,
+    /// Its type.
+    pub kind: Word<'a>,
+    /// Its name.
+    pub name: Word<'a>,
     /// The names of the attributes, each with the number of values up to its own last one.
     attributes: Vec<(Word<'a>, usize)>,
     /// The values of all attributes.
     values: Vec<Word<'a>>,
     /// The range from the entity's type to its end.
-    pub(crate) place: Place,
+    pub place: Place,
     /// Whether some of the entity's text could not be parsed. Missing attributes are then not reported.
     pub(crate) is_damaged: bool,
 }
@@ -179,7 +185,7 @@ impl<'a> Parsed<'a> {
     }
 
     /// Returns the attributes, each with its values.
-    pub(crate) fn attributes(&self) -> impl DoubleEndedIterator<Item = (&Word<'a>, &[Word<'a>])> {
+    pub fn attributes(&self) -> impl DoubleEndedIterator<Item = (&Word<'a>, &[Word<'a>])> {
         let indexed = self.attributes.iter().enumerate();
         indexed.map(|(index, (name, _))| (name, self.values_of(index)))
     }

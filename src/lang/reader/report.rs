@@ -218,7 +218,7 @@ impl<'t> Report<'t> {
     }
 
     /// Tells whether there are so many errors that reading stops. From then on, the report is marked as cut short.
-    pub(crate) fn has_enough(&mut self) -> bool {
+    pub fn has_enough(&mut self) -> bool {
         self.notes.is_cut_short |= self.count(Severity::Error) >= MAX_ERRORS;
         self.notes.is_cut_short
     }

@@ -11,19 +11,26 @@ use std::ops::Range;
 /// A part of a text, and its place.
 #[derive(Clone, Copy)]
 pub struct Token {
+    /// Its form.
     pub form: TokenForm,
+    /// Where it begins in the text, in bytes.
     pub start: usize,
+    /// Where it ends in the text, in bytes.
     pub end: usize,
 }
 
+/// The form of a token.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum TokenForm {
+    /// A word.
     Word,
     /// A word in quotes.
     Quoted,
     /// A word after an unclosed quote.
     Unclosed,
+    /// An opening brace.
     Open,
+    /// A closing brace.
     Close,
     /// White space.
     Space,
@@ -62,6 +69,7 @@ impl Token {
         matches!(self.form, TokenForm::Space | TokenForm::Comment)
     }
 
+    /// Returns whether this is a brace.
     #[inline]
     pub fn is_brace(self) -> bool {
         matches!(self.form, TokenForm::Open | TokenForm::Close)
@@ -72,6 +80,7 @@ impl Token {
         if matches!(self.form, TokenForm::Quoted | TokenForm::Unclosed) { Form::Text } else { Form::Any }
     }
 
+    /// Returns its range in the text, in bytes.
     #[inline]
     pub fn place(self) -> Range<usize> {
         self.start..self.end

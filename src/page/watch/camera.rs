@@ -4,7 +4,7 @@ use super::session::{Session, refusal};
 use crate::camera::{self, MoveRequest};
 use hyper::{Response, StatusCode};
 use tabray_core::text::{self, short};
-use tabray_lang::editor::{self, Change, Text};
+use tabray_editor::{self as editor, Change, Text};
 use tabray_serve::{self as serve, Body};
 
 /// Said before there is an image.

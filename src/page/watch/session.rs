@@ -13,7 +13,7 @@ use tabray_cli::files::output;
 use tabray_cli::process::crash;
 use tabray_cli::process::failure::Failure;
 use tabray_core::text;
-use tabray_lang::editor::{self, Text};
+use tabray_editor::{self as editor, Text};
 use tabray_lang::reader::{self, ReadOptions};
 use tabray_lang::registry::Registry;
 use tabray_serve::{self as serve, Body};

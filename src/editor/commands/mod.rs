@@ -1,0 +1,6 @@
+//! The subcommands: `fmt`, `grammar`, `lsp` and `schema`.
+
+mod fmt;
+mod grammar;
+mod lsp;
+mod schema;
