@@ -1,4 +1,4 @@
-// The built-in scenes of many objects (src/tools/bench/scenes.rs) by Embree: single rays in single precision on one
+// The built-in scenes of many objects (src/measure/bench/scenes.rs) by Embree: single rays in single precision on one
 // thread, without shading. Prints the milliseconds of CPU time of a frame and of building on one thread, the milliseconds
 // of building on all threads, and the number of rays.
 //

@@ -1,4 +1,4 @@
-# Writes the scene of many objects that src/tools/bench/scenes.rs makes: `name` is sphere, triangle or mesh, and `count` the
+# Writes the scene of many objects that src/measure/bench/scenes.rs makes: `name` is sphere, triangle or mesh, and `count` the
 # number of objects. A mesh is that of the triangles, in the file `ply`.
 function part(x) { return x - int(x) }
 function at(ring, step,    y, angle, radius) {

@@ -48,6 +48,8 @@ pub mod scene {
 
 /// Uses of a scene beside its image, with those of the guests that are enabled.
 pub mod tools {
+    #[cfg(feature = "measure")]
+    pub use tabray_measure::{bench, chart};
     #[cfg(feature = "rays")]
     pub use tabray_rays::{hits, surface_mesh};
     pub use tabray_tools::*;

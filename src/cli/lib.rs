@@ -1,10 +1,7 @@
 //! The command line: one file per subcommand, and in folders what they share: `rendering`, `files`, `options` and, below
 //! all of it, `process`.
 
-mod bench;
-mod chart;
 mod check;
-mod choose;
 pub mod command;
 mod completions;
 mod convert;
@@ -20,7 +17,6 @@ pub mod fuzz;
 mod heap;
 mod list;
 mod man;
-pub mod measuring;
 mod merge;
 mod new;
 mod notes;

@@ -1,9 +1,7 @@
-//! Tools that use a model for more than rendering: charts, benchmarks, contracts and proofs.
+//! Tools that use a model for more than rendering: contracts, proofs, explanations, checkpoints and parts.
 
 pub mod assumptions;
-pub mod bench;
-pub mod certain;
-pub mod chart;
+pub mod clock;
 pub mod colours;
 pub mod contract;
 pub mod debug;
@@ -11,7 +9,6 @@ pub mod diagnosis;
 pub mod identity;
 pub mod pixels;
 pub mod probe;
-pub mod sampling;
 pub mod threads;
 pub mod verify;
 

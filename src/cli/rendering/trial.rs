@@ -8,7 +8,7 @@ use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::text::{count, shown};
 use tabray_core::world::accuracy::Accuracy;
-use tabray_tools::bench::clock;
+use tabray_tools::clock;
 use tabray_tools::verify::{self, Trial};
 
 /// The largest part of the time of a render that the trial of its pixels takes, and a time that it may take in any case.

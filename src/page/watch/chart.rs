@@ -10,12 +10,12 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
-use tabray_cli::measuring::Time;
 use tabray_cli::process::crash;
 use tabray_cli::process::failure::report;
 use tabray_core::text;
 use tabray_lang::registry::Registry;
-use tabray_tools::chart::{self, Chart, Panel, Progress};
+use tabray_measure::chart::{self, Chart, Panel, Progress};
+use tabray_measure::measuring::Time;
 
 /// The longest time that a page may give a chart, in seconds.
 pub const MOST_SECONDS: u64 = 3600;

@@ -16,7 +16,6 @@ use super::sampled::{Errors, Image, doubt_of_each};
 use super::small::{Missed, SmallThings};
 use super::times::Times;
 use super::timings::{self, Cost, Timings, plan};
-use crate::threads::renderer_with;
 use std::io;
 use std::mem::take;
 use tabray_core::render::plan::Plan;
@@ -25,6 +24,7 @@ use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::sensor::Sensor;
+use tabray_tools::threads::renderer_with;
 
 /// A part of a measurement: numbers of samples to choose from.
 #[derive(Clone, Copy)]

@@ -6,19 +6,16 @@
 
 #![allow(clippy::disallowed_methods, reason = "charts are of measured times and errors")]
 
-#[cfg(feature = "drawing")]
 mod axis;
 mod betting;
 mod bright;
 mod candidate;
-#[cfg(feature = "drawing")]
 mod canvas;
 mod clock;
 mod colours;
 mod confirm;
 mod cost;
 mod data;
-#[cfg(feature = "drawing")]
 mod draw;
 mod estimate;
 mod files;
@@ -26,7 +23,6 @@ mod front;
 mod goal;
 mod hits;
 mod judgement;
-#[cfg(feature = "drawing")]
 mod labels;
 mod machine;
 mod needed;
@@ -46,7 +42,6 @@ mod verdict;
 pub use candidate::Load;
 pub use cost::Estimated;
 pub use data::{Chart, Family, Panel, Point, Subject, WrongHits, WrongHitsOf};
-#[cfg(feature = "drawing")]
 pub use draw::{png, svg};
 pub use estimate::estimates;
 pub use files::{csv, json};

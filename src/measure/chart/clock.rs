@@ -3,9 +3,9 @@
 
 use super::progress::Progress;
 use super::times::Times;
-use crate::bench::clock;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
+use tabray_tools::clock;
 
 /// The maximum number of rounds.
 const MAX_ROUNDS: usize = 15;

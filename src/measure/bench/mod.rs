@@ -3,13 +3,11 @@
 //! Times are CPU times of the thread that traces (`clock`), the minimum of several rounds.
 
 mod ceiling;
-pub mod clock;
 mod packets;
 pub mod scenes;
 
 pub use packets::Times;
 
-use crate::threads::renderer_with;
 use ceiling::TextbookTest;
 use glam::{DVec2, DVec3};
 use std::io;
@@ -27,6 +25,8 @@ use tabray_core::world::body::AnyShader;
 use tabray_core::world::material::{Look, Material, Rgb};
 use tabray_core::world::shader::Shader;
 use tabray_core::world::surface_point::{ShaderInputs, SurfacePoint};
+use tabray_tools::clock;
+use tabray_tools::threads::renderer_with;
 
 /// The speed at which a scene is traced.
 #[derive(Clone, Debug)]

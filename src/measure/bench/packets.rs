@@ -1,6 +1,5 @@
 //! Packets of a scene's own rays, to time the functions of its shapes with.
 
-use super::clock;
 use std::hint::black_box;
 use std::time::Duration;
 use tabray_core::geometry::ray::{MISS, Side};
@@ -12,6 +11,7 @@ use tabray_core::render::trace::{self, Scratch, Tracer};
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::Vectors;
+use tabray_tools::clock;
 
 /// The maximum number of tiles that are used, spread over the image.
 const TILES: usize = 256;

@@ -4,7 +4,6 @@ use super::cost::{Counted, Estimated, Timing};
 use super::places::spread;
 use super::progress::Progress;
 use super::traced;
-use crate::bench::clock;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::io;
@@ -16,6 +15,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
+use tabray_tools::clock;
 
 /// The numbers of samples with which the times of accuracies are compared, and the number of groups of packets.
 const COMPARED: [u32; 2] = [1, 4];

@@ -1,10 +1,10 @@
 //! All choices of a scene, ready to be measured.
 
 use super::candidate::{self, Candidate, Load};
-use crate::threads::renderer_with;
 use std::io;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::world::accuracy::Accuracy;
+use tabray_tools::threads::renderer_with;
 
 /// The inputs of a measurement.
 pub(super) struct Study {

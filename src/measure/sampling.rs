@@ -1,6 +1,5 @@
 //! Measures the cost of numbers of samples per pixel, and the errors that they leave in an image.
 
-use crate::bench::clock;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use tabray_core::parallel;
@@ -16,6 +15,7 @@ use tabray_core::world::display::Display;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
 use tabray_core::world::sensor::Adaptive;
+use tabray_tools::clock;
 
 /// Numbers of samples per pixel.
 #[derive(Clone, Copy, Debug)]

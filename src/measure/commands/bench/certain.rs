@@ -1,10 +1,10 @@
 //! `bench --sampling certain`: what `--max-error --certain` proves, whether samples contradict it, and what it costs.
 
-use crate::process::failure::{Failure, print};
+use crate::certain::{self, Outcome};
 use std::path::Path;
+use tabray_cli::process::failure::{Failure, print};
 use tabray_core::scene::model::Model;
 use tabray_core::text::short;
-use tabray_tools::certain::{self, Outcome};
 use tabray_tools::threads::renderer_with;
 
 /// The limits that are measured, in levels.

@@ -1,6 +1,5 @@
 //! Measures certified pixels: how many there are, whether samples contradict them, and what they cost.
 
-use crate::bench::clock;
 use tabray_core::parallel;
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::observer::{Count, DynObserver, TraceObserver};
@@ -13,6 +12,7 @@ use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
 use tabray_core::world::sensor::Adaptive;
+use tabray_tools::clock;
 
 /// The number of independent images whose mean gives the true colours, and the number of samples per pixel of each.
 const IMAGES: u32 = 8;
@@ -169,10 +169,10 @@ fn render(renderer: &Renderer, model: &Model) -> Rendered {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::threads::renderer_with;
     use std::path::Path;
     use tabray_lang::reader;
     use tabray_lang::registry::Registry;
+    use tabray_tools::threads::renderer_with;
 
     /// A floor, a wall with a mirror, spheres, a cone and a torus, a pane of glass, two lights, one of them with a
     /// size.

@@ -1,7 +1,6 @@
 //! Some pixels of an image, traced in groups as a render traces them: their colours and their costs.
 
 use super::places::Pixels;
-use crate::bench::clock;
 use std::hint::black_box;
 use std::mem::replace;
 use std::sync::{Mutex, PoisonError};
@@ -14,6 +13,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
+use tabray_tools::clock;
 
 /// The time of a group, in seconds, below which the first use of scratch space matters.
 const SHORT: f64 = 1e-3;

@@ -3,20 +3,20 @@
 mod certain;
 mod sampling;
 
-use crate::command::{Command, Group, Run};
-use crate::files::{input, output};
-use crate::options::{cpu, method, set};
-use crate::process::failure::{Failure, print};
+use crate::bench::{Cost, Speed, TestTimes, scenes};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Duration;
+use tabray_cli::files::{input, output};
+use tabray_cli::options::{cpu, method, set};
+use tabray_cli::process::failure::{Failure, print};
+use tabray_cli::{Command, Group, Run};
 use tabray_core::scene::model::Model;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::text;
 use tabray_lang::reader;
 use tabray_lang::registry::Registry;
-use tabray_tools::bench::{Cost, Speed, TestTimes, scenes};
 
 /// Measure how fast scenes are traced on one core
 ///

@@ -1,16 +1,16 @@
 //! The progress of a measurement: a bar on a terminal, and lines elsewhere. An interruption ends it, and so does a time
 //! limit.
 
-use crate::process::interrupt::{self, InterruptAction};
-use crate::process::messages;
-use crate::process::progress::Progress;
+use crate::chart::{self, Panel};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use tabray_tools::chart::{self, Panel};
+use tabray_cli::process::interrupt::{self, InterruptAction};
+use tabray_cli::process::messages;
+use tabray_cli::process::progress::Progress;
 
 /// The time between two lines of progress.
 const LINES: Duration = Duration::from_secs(10);

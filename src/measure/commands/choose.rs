@@ -1,14 +1,8 @@
 //! `tabray choose`: chooses accuracy and samples for a maximum error or time.
 
 use super::chart::all_accuracies;
-use super::measuring::{Work, wait};
-use crate::command::{Command, Group, Run};
-use crate::files::input;
-use crate::options::max_error::{LEVELS, MaxError, levels};
-use crate::options::{scene, set, stop};
-use crate::process::failure::{self, Failure, print};
-use crate::process::interrupt::{self, InterruptAction};
-use crate::process::program;
+use crate::chart::{self, Cost, Estimate, Estimates, Goal};
+use crate::measuring::{Work, wait};
 use clap::ArgGroup;
 use std::cmp::Ordering;
 use std::fmt::Write;
@@ -18,13 +12,19 @@ use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
+use tabray_cli::files::input;
+use tabray_cli::options::max_error::{LEVELS, MaxError, levels};
+use tabray_cli::options::{scene, set, stop};
+use tabray_cli::process::failure::{self, Failure, print};
+use tabray_cli::process::interrupt::{self, InterruptAction};
+use tabray_cli::process::program;
+use tabray_cli::{Command, Group, Run};
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::choice::Choice;
 use tabray_core::text::{self, short};
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
-use tabray_tools::bench::clock;
-use tabray_tools::chart::{self, Cost, Estimate, Estimates, Goal};
+use tabray_tools::clock;
 
 /// Choose accuracy and samples for a maximum error or time
 ///

@@ -1,16 +1,16 @@
 //! `bench --sampling`: the cost and the error of numbers of samples per pixel.
 
-use crate::files::output;
-use crate::process::failure::{Failure, print};
+use crate::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, WrongHits};
+use crate::sampling::{self, LEVELS, Measured, Samples};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
+use tabray_cli::files::output;
+use tabray_cli::process::failure::{Failure, print};
 use tabray_core::scene::model::Model;
 use tabray_core::text::{self, short};
 use tabray_core::world::sample::Sampler;
 use tabray_core::world::sensor::Adaptive;
-use tabray_tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, WrongHits};
-use tabray_tools::sampling::{self, LEVELS, Measured, Samples};
 use tabray_tools::threads::renderer_with;
 
 /// The number of samples per pixel of the images that count as true.

@@ -1,13 +1,7 @@
 //! `tabray chart`: the cost and the error of each choice in a scene.
 
-use super::measuring::{Time, Work, wait};
-use crate::command::{Command, Group, Run};
-use crate::files::input::{self, Source};
-use crate::files::output::{self, Output};
-use crate::options::{scene, stop};
-use crate::process::failure::{self, Failure, print};
-use crate::process::interrupt::{self, InterruptAction};
-use crate::process::{messages, progress};
+use crate::chart::{self, Chart};
+use crate::measuring::{Time, Work, wait};
 use std::io::{self, Write};
 use std::panic;
 use std::path::{Path, PathBuf};
@@ -15,13 +9,19 @@ use std::sync::PoisonError;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
+use tabray_cli::files::input::{self, Source};
+use tabray_cli::files::output::{self, Output};
+use tabray_cli::options::{scene, stop};
+use tabray_cli::process::failure::{self, Failure, print};
+use tabray_cli::process::interrupt::{self, InterruptAction};
+use tabray_cli::process::{messages, progress};
+use tabray_cli::{Command, Group, Run};
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::ReadOptions;
 use tabray_lang::registry::Registry;
-use tabray_tools::chart::{self, Chart};
 
 /// Chart the cost and the error of each choice in a scene
 ///

@@ -1,0 +1,5 @@
+//! The subcommands: `bench`, `chart` and `choose`.
+
+mod bench;
+mod chart;
+mod choose;
