@@ -6,7 +6,8 @@
 //! - [`exact`] (tabray-exact): intervals, longer numbers, formulas and roots
 //! - [`geometry`], [`world`], [`shapes`], [`render`] and [`output`] (tabray-core): from a model to an image
 //! - [`scene`] (tabray-core, tabray-lang): the tables of entity types, the model, and the reader of scenes
-//! - [`tools`] (tabray-tools) and [`cli`] (tabray-cli): charts, proofs and contract tests; the command line
+//! - [`tools`] (tabray-tools) and [`cli`] (tabray-cli): proofs and contract tests; the command line
+//! - guests, each with a feature of its name that is on by default: `editor`, `measure`, `page`, `rays` and `teachers`
 //! - `tabray-plugins`: the entity types, each a file in `plugins/`
 //!
 //! Data flows in one direction: a scene's text becomes entities, checked against the tables of their types, then a
