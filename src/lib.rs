@@ -7,7 +7,8 @@
 //! - [`geometry`], [`world`], [`shapes`], [`render`] and [`output`] (tabray-core): from a model to an image
 //! - [`scene`] (tabray-core, tabray-lang): the tables of entity types, the model, and the reader of scenes
 //! - [`tools`] (tabray-tools) and [`cli`] (tabray-cli): proofs and contract tests; the command line
-//! - guests, each with a feature of its name that is on by default: `editor`, `measure`, `page`, `rays` and `teachers`
+//! - guests, each with a feature of its name that is on by default: `editor`, `import`, `measure`, `page`, `rays` and
+//!   `teachers`
 //! - `tabray-plugins`: the entity types, each a file in `plugins/`
 //!
 //! Data flows in one direction: a scene's text becomes entities, checked against the tables of their types, then a
@@ -23,7 +24,9 @@ pub use tabray_cli as cli;
 pub use tabray_core::{geometry, glam, output, prelude, query, render, shapes, simd, world};
 pub use tabray_exact as exact;
 
-// Links the entity types and the guests' subcommands, which register themselves.
+// Links the entity types and what guests add, which register themselves.
+#[cfg(feature = "import")]
+use tabray_import as _;
 #[cfg(feature = "page")]
 use tabray_page as _;
 use tabray_plugins as _;

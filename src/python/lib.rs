@@ -12,6 +12,7 @@ mod scene;
 mod work;
 
 // Links the entity types.
+use tabray_import as _;
 use tabray_plugins as _;
 
 /// The part of the package in Rust.

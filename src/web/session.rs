@@ -74,6 +74,7 @@ impl Session {
     /// If entity types contradict each other, which the program's tests exclude.
     pub fn new() -> Self {
         tabray_plugins::link();
+        tabray_import::link();
         let registry = Registry::get().expect("entity types that do not contradict each other");
         Self { registry, scene: None, painting: Painting::default(), proving: Proving::default() }
     }

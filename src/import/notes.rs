@@ -1,6 +1,6 @@
 //! Messages about a file of another program.
 
-use crate::reader::{Fault, Report};
+use tabray_lang::reader::{Fault, Report};
 
 /// The messages about a file.
 pub(super) struct Notes {

@@ -3,12 +3,12 @@
 use super::expression::{self, Dialect, Names, Read, Value};
 use super::notes::Notes;
 use super::picture::{Clip, Light, Look, Picture, Surface};
-use crate::reader::Fault;
 use glam::{DMat3, DVec3};
 use std::cell::RefCell;
 use std::ops::Range;
 use tabray_core::text::shortest;
 use tabray_exact::formula::is_taken;
+use tabray_lang::reader::Fault;
 
 /// The width and height of the image, which files do not give.
 const PIXELS: u32 = 480;

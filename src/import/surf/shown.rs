@@ -1,10 +1,10 @@
 //! The picture described by the settings and the surfaces of a script.
 
 use super::script::{CLIPS, SURFACES, Script};
-use crate::import::expression::{Names, turn};
-use crate::import::picture::{Clip, Light, Look, Picture, Surface};
-use crate::reader::Fault;
+use crate::expression::{Names, turn};
+use crate::picture::{Clip, Light, Look, Picture, Surface};
 use glam::{DMat3, DVec3};
+use tabray_lang::reader::Fault;
 
 /// The visible extent along the shorter side of a picture.
 const SEEN: f64 = 20.0;

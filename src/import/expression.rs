@@ -1,9 +1,9 @@
 //! Reads a formula of SURFER or surf, and converts it to the notation of scenes.
 
-use crate::reader::Fault;
 use glam::DMat3;
 use std::ops::Range;
 use tabray_core::text::shortest;
+use tabray_lang::reader::Fault;
 
 /// The maximum nesting of parentheses, signs and powers.
 const DEEPEST: usize = 200;

@@ -1,11 +1,11 @@
 //! The reader of a script's statements.
 
-use crate::import::expression::{self, Dialect, Names, Value};
-use crate::import::notes::Notes;
-use crate::reader::Fault;
+use crate::expression::{self, Dialect, Names, Value};
+use crate::notes::Notes;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use tabray_exact::formula::is_taken;
+use tabray_lang::reader::Fault;
 
 /// The numbers of the possible surfaces and lamps of a script.
 pub const SURFACES: Range<usize> = 1..10;

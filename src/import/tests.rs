@@ -1,10 +1,12 @@
 //! Tests of files of other programs.
 
 use super::*;
-use crate::reader;
-use crate::registry::Registry;
 use expression::{Dialect, Names, Value};
 use glam::DVec3;
+use std::path::Path;
+use tabray_lang::import::scene;
+use tabray_lang::reader;
+use tabray_lang::registry::Registry;
 
 struct Nothing;
 
