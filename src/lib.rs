@@ -7,8 +7,8 @@
 //! - [`geometry`], [`world`], [`shapes`], [`render`] and [`output`] (tabray-core): from a model to an image
 //! - [`scene`] (tabray-core, tabray-lang): the tables of entity types, the model, and the reader of scenes
 //! - [`tools`] (tabray-tools) and [`cli`] (tabray-cli): proofs and contract tests; the command line
-//! - guests, each with a feature of its name that is on by default: `editor`, `import`, `measure`, `page`, `rays` and
-//!   `teachers`
+//! - guests, each with a feature of its name that is on by default: `editor`, `farm`, `import`, `measure`, `page`,
+//!   `rays` and `teachers`
 //! - `tabray-plugins`: the entity types, each a file in `plugins/`
 //!
 //! Data flows in one direction: a scene's text becomes entities, checked against the tables of their types, then a
@@ -25,6 +25,8 @@ pub use tabray_core::{geometry, glam, output, prelude, query, render, shapes, si
 pub use tabray_exact as exact;
 
 // Links the entity types and what guests add, which register themselves.
+#[cfg(feature = "farm")]
+use tabray_farm as _;
 #[cfg(feature = "import")]
 use tabray_import as _;
 #[cfg(feature = "page")]

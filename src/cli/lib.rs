@@ -7,9 +7,7 @@ mod completions;
 mod convert;
 mod course;
 mod dump;
-mod farm;
 pub mod files;
-mod film;
 #[cfg(feature = "fuzz")]
 #[doc(hidden)]
 #[path = "../../tests/fuzz/entries.rs"]
@@ -24,7 +22,7 @@ pub mod options;
 pub mod plan;
 mod probe;
 pub mod process;
-mod render;
+pub mod render;
 mod rendering;
 mod verify;
 

@@ -1,9 +1,9 @@
 //! The scripts of a Slurm job array.
 
 use super::job::{Job, word};
-use crate::files::output;
-use crate::process::failure::{Failure, print};
 use std::path::Path;
+use tabray_cli::files::output;
+use tabray_cli::process::failure::{Failure, print};
 use tabray_core::text;
 
 /// Writes the scripts, and prints the command that submits them.

@@ -1,7 +1,7 @@
 //! What a scheduler is to run, in words for a shell.
 
-use crate::process::failure::Failure;
 use std::path::{Path, PathBuf};
+use tabray_cli::process::failure::Failure;
 use tabray_core::text;
 
 /// An order that was checked, in words for a shell.

@@ -1,19 +1,19 @@
 //! `tabray film`: puts frames together to a contact sheet and to an animation.
 
-use crate::command::{Command, Group, Run};
-use crate::files::output::{self, Output};
-use crate::files::paths::are_same;
-use crate::files::picture;
-use crate::options::number::whole;
-use crate::process::failure::Failure;
-use crate::process::progress::Progress;
-use crate::process::{memory, messages};
 use clap::ArgGroup;
 use image::imageops;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use tabray_cli::files::output::{self, Output};
+use tabray_cli::files::paths::are_same;
+use tabray_cli::files::picture;
+use tabray_cli::options::number::whole;
+use tabray_cli::process::failure::Failure;
+use tabray_cli::process::progress::Progress;
+use tabray_cli::process::{memory, messages};
+use tabray_cli::{Command, Group, Run};
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
 use tabray_core::text;
