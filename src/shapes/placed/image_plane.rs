@@ -16,6 +16,7 @@ pub struct MaxZ(pub Option<f64>);
 
 impl MaxZ {
     /// Tells whether a hit of a ray is cut off, in `f64` arithmetic.
+    #[inline(always)]
     pub fn cuts_off(self, ray: &Ray, distance: f64) -> bool {
         self.0.is_some_and(|max_z| ray.at(distance).z > max_z)
     }

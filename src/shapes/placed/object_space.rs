@@ -5,7 +5,7 @@ use super::shape::{Placed, in_world};
 use glam::DVec3;
 use tabray_world::coincidence::CLOSE;
 use tabray_world::geometry::aabb::{self, Aabb};
-use tabray_world::geometry::ray::{Bracket, RayError, RayRange, Side};
+use tabray_world::geometry::ray::{Bracket, MISS, RayError, RayRange, Side};
 use tabray_world::geometry::ray_packet::{RayPacket, turned};
 use tabray_world::simd::cpu::{Cpu, kernels};
 use tabray_world::simd::soa::{Vectors, View};
@@ -26,8 +26,8 @@ pub fn in_object_space<const N: usize, T>(
     let (lengths, own_ends) = (&mut lengths[..count], &mut own_ends[..count]);
     take_in(cpu, placed, rays, ends, lengths, own_ends, origin.view_mut(count), dir.view_mut(count));
     let origin_error = if rays.origin_error > 0.0 {
-        let Aabb { low, high } = aabb::around(cpu, rays.origin.first(count));
-        placed.object_error(low.abs().max(high.abs()), rays.origin_error)
+        let reach = aabb::reach(cpu, rays.origin.first(count));
+        placed.object_error(DVec3::splat(reach), rays.origin_error)
     } else {
         0.0
     };
@@ -106,6 +106,26 @@ kernels! {
             let range = RayRange { far: ends[lane], ..RayRange::ALL };
             let bracket = in_world(Bracket { near: near[lane], far: far[lane] }, lengths[lane], error, &rays.get(lane), &range);
             (near[lane], far[lane]) = (bracket.near, bracket.far);
+        }
+    }
+
+    /// Maps distances that were found in object space to world units, for rays whose brackets in world units are open.
+    /// `own` are brackets in object space. NaN stands for what a single ray decides.
+    pub fn take_out_distances(
+        max_z: MaxZ, rays: RayPacket, lengths: &[f64], brackets: (&[f64], &[f64]), own: (&[f64], &[f64]),
+        distances: &[f64], out: &mut [f64]
+    ) {
+        let (count, rays) = (out.len(), rays.first(out.len()));
+        let (near, far) = (&brackets.0[..count], &brackets.1[..count]);
+        let (low, high) = (&own.0[..count], &own.1[..count]);
+        let (lengths, distances) = (&lengths[..count], &distances[..count]);
+        for lane in 0..count {
+            let distance = if low[lane] == high[lane] { low[lane] } else { distances[lane] };
+            let kept = RayRange::ALL.keep(distance / lengths[lane]);
+            let kept = if max_z.cuts_off(&rays.get(lane), kept) { MISS } else { kept };
+            let is_open = distance.is_nan() | ((low[lane] < MISS) & (high[lane] == MISS));
+            let kept = if is_open { f64::NAN } else { kept };
+            out[lane] = if near[lane] == far[lane] { out[lane] } else { kept };
         }
     }
 

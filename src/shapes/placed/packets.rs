@@ -2,7 +2,8 @@
 //! packets there, too.
 
 use super::object_space::{
-    end_in, in_object_space, keep_brackets, object_hits, take_out, take_out_normals, to_world,
+    end_in, in_object_space, keep_brackets, object_hits, take_out, take_out_distances, take_out_normals,
+    to_world,
 };
 use super::shape::{Placed, entered};
 use glam::DVec3;
@@ -78,25 +79,15 @@ impl Placed {
                 let (low, high) = (&mut low[..count], &mut high[..count]);
                 shape.brackets(cpu, own, ends, (&mut *low, &mut *high));
                 // A single ray decides doubtful hits.
-                let mut is_open = [false; PART];
+                let (mut ends, mut distances) = ([MISS; PART], [MISS; PART]);
+                let (ends, distances) = (&mut ends[..count], &mut distances[..count]);
                 for lane in 0..count {
-                    is_open[lane] = low[lane] < MISS && high[lane] == MISS;
-                    high[lane] = if is_open[lane] { low[lane] } else { high[lane] };
+                    ends[lane] = if high[lane] == MISS { low[lane] } else { high[lane] };
                 }
-                let mut distances = [MISS; PART];
-                distances[..count].copy_from_slice(low);
-                shape.refine(cpu, own, (&*low, &*high), &mut distances[..count]);
-                for lane in (0..count).filter(|lane| near[*lane] != far[*lane]) {
-                    let distance = if low[lane] == high[lane] { low[lane] } else { distances[lane] };
-                    let kept = RayRange::ALL.keep(distance / lengths[lane]);
-                    out[lane] = if is_open[lane] || distance.is_nan() {
-                        f64::NAN
-                    } else if self.max_z.cuts_off(&rays.get(lane), kept) {
-                        MISS
-                    } else {
-                        kept
-                    };
-                }
+                distances.copy_from_slice(low);
+                shape.refine(cpu, own, (&*low, &*ends), distances);
+                let (given, own) = ((near, far), (&*low, &*high));
+                take_out_distances(cpu, self.max_z, rays, lengths, given, own, distances, out);
             },
         );
     }

@@ -126,4 +126,10 @@ kernels! {
         let (x, y, z) = (range(points.x), range(points.y), range(points.z));
         Aabb { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) }
     }
+
+    /// Returns the largest magnitude of a coordinate of some points, or 0 for none.
+    pub fn reach(points: View) -> f64 {
+        let largest = |of: &[f64]| of.iter().fold(0, |largest, number| largest.max(number.abs().to_bits() as i64));
+        from_order(largest(points.x).max(largest(points.y)).max(largest(points.z)))
+    }
 }
