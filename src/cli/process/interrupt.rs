@@ -28,10 +28,10 @@ pub enum InterruptAction {
     Exit(&'static str),
     /// A flag is set, which [`check`] reports.
     SetFlag,
-    /// A flag is set, which [`check`] reports. If this is still the action after [`PATIENCE`], the program
-    /// exits with this message.
+    /// A flag is set, which [`check`] reports. If this is still the action after `PATIENCE`, the program exits with
+    /// this message.
     SetFlagThenExit(&'static str),
-    /// A flag is set, which [`check`] reports. If nothing is sent to whoever reads the output for [`PATIENCE`], the
+    /// A flag is set, which [`check`] reports. If nothing is sent to whoever reads the output for `PATIENCE`, the
     /// program exits with this message; the function tells how many bytes were sent.
     SetFlagUntilStuck(fn() -> u64, &'static str),
 }
