@@ -45,7 +45,7 @@ impl Flaws {
         self.cuts.add(other.cuts);
         self.far = FarPaths { rays: self.far.rays + other.far.rays, of: self.far.of + other.far.of };
         for (of, pixels) in &other.undecided.0 {
-            *self.undecided.0.entry(*of).or_default() += pixels;
+            *self.undecided.0.entry(of.clone()).or_default() += pixels;
         }
     }
 }

@@ -61,7 +61,7 @@ impl<const SEES: bool> TraceObserver for DynObserver<'_, SEES> {
 }
 
 /// Work that was done or saved. Counts are of single rays, not of packets.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Count {
     /// A number of rays of a kind were cast.
     Rays(RayKind, usize),

@@ -83,13 +83,12 @@ impl TraceObserver for RayStats {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
-        self.flaws.count(count);
-        match count {
-            Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,
-            Count::Tested(object, rays) => self.of(object).tested += rays as u64,
-            Count::Culled(object, rays) => self.of(object).culled += rays as u64,
-            Count::Sampled(samples) => self.sampled[samples.ilog2() as usize] += 1,
-            Count::Bounded { error, is_certified, footprints } => {
+        match &count {
+            &Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,
+            &Count::Tested(object, rays) => self.of(object).tested += rays as u64,
+            &Count::Culled(object, rays) => self.of(object).culled += rays as u64,
+            &Count::Sampled(samples) => self.sampled[samples.ilog2() as usize] += 1,
+            &Count::Bounded { error, is_certified, footprints } => {
                 let pixels = u64::from(!is_certified);
                 let most = if is_certified { 0.0 } else { error };
                 let sum = (PARTS * most).ceil() as u64;
@@ -98,6 +97,7 @@ impl TraceObserver for RayStats {
             }
             Count::Cut(_) | Count::Undecided(..) | Count::Far(_) => {}
         }
+        self.flaws.count(count);
     }
 }
 

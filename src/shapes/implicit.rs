@@ -52,8 +52,9 @@ pub(super) fn body(formula: impl Implicit + 'static, frame: Frame) -> Body {
     let degree = formula.along([diagonal; 3]).degree();
     let ends = [low.to_array(), high.to_array()];
     let nodes = formula.field().zip(degree).and_then(|(field, degree)| Nodes::new(field, degree, ends));
-    let parts = Parts::new(low, high);
-    let shape = ImplicitShape { formula, degree, frame, low, high, parts, nodes };
+    let cost = formula.field().map_or(1, |field| field.formula().cost());
+    let (parts, most_pieces) = (Parts::new(low, high, cost), on_ray::most_pieces(cost));
+    let shape = ImplicitShape { formula, degree, frame, low, high, parts, most_pieces, nodes };
     Body::plain(Shape::new(shape).bracketed().searched())
 }
 

@@ -34,6 +34,26 @@ fn a_render_counts_and_shows_the_pixels_that_it_could_not_decide() {
 }
 
 #[test]
+fn the_operation_that_leaves_pixels_open_is_named() {
+    for (formula, reason) in [
+        ("floor(3*x)*y + 0.5", "`s` jumps, by `floor(3*x)`\n"),
+        ("sin(x*y)/(x*y) - 0.9", "`s` may be undefined, by `sin(x*y)/(x*y)`\n"),
+        ("x^2*exp(y + 0.1*z)", "`s` is 0 without a change of sign\n"),
+    ] {
+        let folder = folder();
+        let text = format!(
+            "look_at eye {{ pixeldim 16 12  position 3.15 1.95 3.9  target 0 0 0  angle 45 }}
+             material m {{ ambient 1 1 1 }}
+             implicit s {{ material m  formula \"{formula}\"  box -1 -1 -1 1 1 1 }}"
+        );
+        fs::write(folder.path().join("s.ray"), text).expect("room for a file");
+        let (status, _, err) = outcome(tabray(&folder).args(["render", "s.ray", "-o", "a.png"]));
+        assert!(status == 0 && err.contains(reason), "{formula}: {err}");
+        assert_eq!(err.contains("squared"), reason.contains("sign"), "{err}");
+    }
+}
+
+#[test]
 fn rays_along_the_horizon_are_decided() {
     let folder = folder();
     let mut command = tabray(&folder);

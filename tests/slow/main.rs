@@ -8,6 +8,7 @@ mod common;
 mod oracle;
 
 mod accuracy;
+mod budget;
 mod chart;
 mod choose;
 mod copy;

@@ -71,10 +71,12 @@ fn warn_of_undecided(undecided: &Undecided, model: &Model) {
             count(undecided.pixels() as usize, "pixel"),
             named.join("; ")
         ),
-        Some(
+        Some(if undecided.0.keys().any(|(_, doubt)| *doubt == Doubt::Touched) {
             "a surface that rays touch but do not cross may be missing there, for example where a factor of a \
-             formula is squared; `--aov undecided` shows these pixels",
-        ),
+             formula is squared; `--aov undecided` shows these pixels"
+        } else {
+            "what is seen there is likely but not proven; `--aov undecided` shows these pixels"
+        }),
     );
 }
 

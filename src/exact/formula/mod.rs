@@ -95,7 +95,7 @@ impl Formula {
         variables: &'static [&'static str],
         named: Named<'_>,
     ) -> Result<Self, FormulaFault> {
-        let Operations { steps, pieces, has_calls } = parser::parse(text, variables, named, |steps| {
+        let Operations { steps, pieces, has_calls, .. } = parser::parse(text, variables, named, |steps| {
             Self::new(String::new(), &[], steps.to_vec()).at(0.0)
         })?;
         let mut written = own::joined(&pieces);
@@ -111,6 +111,17 @@ impl Formula {
             return Err(FormulaFault { place: 0..text.len(), ..fault });
         }
         Ok(Self::new(written, variables, steps))
+    }
+
+    /// Returns the part of the text that an operation comes from, with its operands. Of a function that is itself a
+    /// formula, that is the whole call.
+    fn text_of(&self, step: usize) -> &str {
+        let parsed = parser::parse(&self.text, self.variables, &|_| None, |steps| {
+            Self::new(String::new(), &[], steps.to_vec()).at(0.0)
+        });
+        let Ok(Operations { parts, .. }) = parsed.map_err(drop) else { return &self.text };
+        let part = parts.into_iter().find(|part| part.steps.contains(&step));
+        part.map_or(&self.text, |part| self.text[part.text].trim_end())
     }
 
     /// Returns the names of the variables.

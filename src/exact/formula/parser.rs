@@ -31,6 +31,15 @@ pub(super) struct Operations {
     pub pieces: Vec<Piece>,
     /// Whether the text calls functions of the scene.
     pub has_calls: bool,
+    /// The operations that parts of the text stand for, each part after those within it.
+    pub parts: Vec<Part>,
+}
+
+/// A part of the text of a formula.
+pub(super) struct Part {
+    pub text: Range<usize>,
+    /// Its operations.
+    pub steps: Range<usize>,
 }
 
 /// The maximum whole exponent of a power that is computed by multiplications.
@@ -55,6 +64,7 @@ pub(super) fn parse(
         at: 0,
         steps: Vec::new(),
         edits: Edits::default(),
+        parts: Vec::new(),
         depth: 0,
         is_in_bars: false,
         value,
@@ -74,7 +84,8 @@ pub(super) fn parse(
     match parser.peek() {
         None if deepest(&parser.steps) <= MAX_DEPTH => {
             let pieces = parser.edits.take(text, 0..text.len());
-            Ok(Operations { steps: parser.steps, pieces, has_calls: parser.edits.has_calls })
+            let Parser { steps, edits, parts, .. } = parser;
+            Ok(Operations { steps, pieces, has_calls: edits.has_calls, parts })
         }
         None => Err(parser.fault_here("formula nested too deeply")),
         Some(')') => Err(parser.fault_here("unmatched `)`")),
@@ -97,6 +108,7 @@ struct Parser<'t> {
     steps: Vec<Step>,
     /// The names so far.
     edits: Edits,
+    parts: Vec<Part>,
     /// The number of values on the stack or the depth of parentheses, whichever is greater.
     depth: usize,
     /// Whether a `|` ends an absolute value.
@@ -131,12 +143,30 @@ impl<'t> Parser<'t> {
         self.fault(self.at..self.at + width, message)
     }
 
+    /// Notes that the text from one place on stands for the operations from another on.
+    fn note(&mut self, [text, steps]: [usize; 2]) {
+        self.parts.push(Part { text: text..self.at, steps: steps..self.steps.len() });
+    }
+
+    /// Returns where a part of the text begins, for [`note`](Self::note).
+    fn start(&mut self) -> [usize; 2] {
+        self.peek();
+        [self.at, self.steps.len()]
+    }
+
+    /// Forgets the parts of operations that are about to be replaced, from one on.
+    fn forget(&mut self, from: usize) {
+        while self.parts.pop_if(|part| part.steps.start >= from).is_some() {}
+    }
+
     fn sum(&mut self) -> Parsed {
         self.deeper()?;
+        let start = self.start();
         self.product()?;
         while let Some(sign) = self.take(&['+', '-']) {
             self.product()?;
             self.steps.push(if sign == '+' { Step::Add } else { Step::Sub });
+            self.note(start);
         }
         self.depth -= 1;
         Ok(())
@@ -144,8 +174,8 @@ impl<'t> Parser<'t> {
 
     /// Parses a product. The sign between factors may be omitted: `2x`, `(x + y)(x - y)`.
     fn product(&mut self) -> Parsed {
-        self.peek();
-        let start = self.at;
+        let part = self.start();
+        let start = part[0];
         self.signed()?;
         let mut divides = false;
         loop {
@@ -169,6 +199,7 @@ impl<'t> Parser<'t> {
             }
             divides = sign == Some('/');
             self.steps.push(if divides { Step::Div } else { Step::Mul });
+            self.note(part);
         }
     }
 
@@ -200,10 +231,12 @@ impl<'t> Parser<'t> {
 
     /// Parses a power: `x^2`, `x**2` or `x²`.
     fn power(&mut self) -> Parsed {
+        let start = self.start();
         self.atom()?;
         let exponent = self.steps.len();
         if let Some(power) = self.superscript()? {
             self.steps.push(Step::Powi(power));
+            self.note(start);
             return Ok(());
         }
         if self.text[self.at..].starts_with("**") {
@@ -215,17 +248,20 @@ impl<'t> Parser<'t> {
         self.signed()?;
         self.depth -= 1;
         let is_constant = |step: &Step| !matches!(step, Step::Variable(_) | Step::Spline);
+        let is_whole = |number: f64| number.fract() == 0.0 && number.abs() <= f64::from(MAX_POWER);
+        let mut power = Step::Call(Function::Pow);
         if self.steps[exponent..].iter().all(is_constant) {
             let number = (self.value)(&self.steps[exponent..]);
+            self.forget(exponent);
             self.steps.truncate(exponent);
-            let is_whole = number.fract() == 0.0 && number.abs() <= f64::from(MAX_POWER);
-            if is_whole {
-                self.steps.push(Step::Powi(number as i32));
-                return Ok(());
+            if is_whole(number) {
+                power = Step::Powi(number as i32);
+            } else {
+                self.steps.push(Step::Number(number));
             }
-            self.steps.push(Step::Number(number));
         }
-        self.steps.push(Step::Call(Function::Pow));
+        self.steps.push(power);
+        self.note(start);
         Ok(())
     }
 
@@ -247,6 +283,13 @@ impl<'t> Parser<'t> {
     }
 
     fn atom(&mut self) -> Parsed {
+        let start = self.start();
+        self.atom_alone()?;
+        self.note(start);
+        Ok(())
+    }
+
+    fn atom_alone(&mut self) -> Parsed {
         match self.peek() {
             Some('(') => {
                 let open = self.at;
@@ -396,6 +439,7 @@ impl<'t> Parser<'t> {
             Meaning::Fixed(of) => self.steps.push(Step::Call(of)),
             Meaning::Choice => {
                 if is_reversed {
+                    self.forget(starts[1]);
                     let count = self.steps.len() - starts[2];
                     self.steps[starts[1]..].rotate_right(count);
                 }
@@ -451,6 +495,7 @@ impl<'t> Parser<'t> {
                 step => applied.push(*step),
             }
         }
+        self.forget(starts[0]);
         self.steps.truncate(starts[0]);
         self.steps.append(&mut applied);
         Ok(())
@@ -464,6 +509,7 @@ impl<'t> Parser<'t> {
         if self.steps.len() + ends.len() * (last.len() + 1) > MAX_STEPS {
             return Err(self.fault(place.clone(), "too many operations"));
         }
+        self.forget(*second);
         let rest = self.steps.split_off(*second);
         let mut start = 0;
         for end in ends {

@@ -35,7 +35,32 @@ pub struct Written<'f, F> {
     waiting: Vec<Seen<F>>,
 }
 
+/// What keeps proofs from looking past the points of a box.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Obstacle {
+    /// An operation that may not be defined there, as it is written.
+    Undefined(String),
+    /// An operation whose values may jump.
+    Jump(String),
+    /// All operations are defined and continuous there: what is left is a slope without bounds.
+    Slope,
+}
+
 impl<const N: usize> FieldOf<N> {
+    /// Returns the first operation, in the order of evaluation, that may not be defined at the points of a box, or not
+    /// continuous, if there is one.
+    pub fn obstacle(&self, at: &[Interval]) -> Obstacle {
+        let mut found = None;
+        self.written::<f64>().each(at, |step, seen| {
+            if found.is_none() && !seen.is_continuous() {
+                found = Some((step, seen.is_defined() == Some(true)));
+            }
+        });
+        let Some((step, is_defined)) = found else { return Obstacle::Slope };
+        let text = self.as_written().text_of(step).to_owned();
+        if is_defined { Obstacle::Jump(text) } else { Obstacle::Undefined(text) }
+    }
+
     /// Returns the evaluation of the formula as it was written.
     pub fn written<F: Float>(&self) -> Written<'_, F> {
         Written { steps: &self.as_written().steps, waiting: Vec::new() }
@@ -45,9 +70,15 @@ impl<const N: usize> FieldOf<N> {
 impl<F: Float> Written<'_, F> {
     /// Evaluates the formula at the points of a box.
     pub fn at(&mut self, at: &[Interval<F>]) -> Seen<F> {
+        self.each(at, |_, _| {})
+    }
+
+    /// Evaluates the formula as [`at`](Self::at) does, and shows the value of each operation.
+    #[inline(always)]
+    fn each(&mut self, at: &[Interval<F>], mut show: impl FnMut(usize, &Seen<F>)) -> Seen<F> {
         let unknown = Seen { faults: MAYBE_UNDEFINED, ..Seen::whole() };
         self.waiting.clear();
-        for step in self.steps {
+        for (index, step) in self.steps.iter().enumerate() {
             let mut operand = || self.waiting.pop().unwrap_or(unknown);
             let value = match step.operands() {
                 0 => match *step {
@@ -67,6 +98,7 @@ impl<F: Float> Written<'_, F> {
                     operand().three(*step, b, c)
                 }
             };
+            show(index, &value);
             self.waiting.push(value);
         }
         self.waiting.pop().unwrap_or(unknown)
@@ -385,4 +417,37 @@ fn extremes<F: Float>([first, rest @ ..]: [F; 4]) -> [F; 2] {
     let low = rest.iter().fold(first, |low, of| if *of < low { *of } else { low });
     let high = rest.iter().fold(first, |high, of| if *of > high { *of } else { high });
     [low, high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::Formula;
+    use crate::formula::field::Field;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_keeps_proofs_from_looking_past_the_origin_is_named() {
+        let undefined = |text: &str| Obstacle::Undefined(text.to_owned());
+        let jump = |text: &str| Obstacle::Jump(text.to_owned());
+        for (text, expected) in [
+            ("x^2 + y^2 - 1", Obstacle::Slope),
+            ("cbrt(x)*abs(y)", Obstacle::Slope),
+            ("1/cbrt(x - z) - 1", undefined("1/cbrt(x - z)")),
+            ("2 - cbrt(x - z)^-1 + y", undefined("cbrt(x - z)^-1")),
+            ("sqrt(x + 1)*ln( y ) + z/x", undefined("ln( y )")),
+            ("(x + 1)*(y/z)*3", undefined("y/z")),
+            ("asin(y/x)", undefined("asin(y/x)")),
+            ("smin(1/x, y, 0.3)", undefined("1/x")),
+            ("x² + 2 floor(5x) y", jump("floor(5x)")),
+            ("min(x, if(y < 1/z, 1, 2))", undefined("1/z")),
+            ("min(x, if(y < z, 1, 2))", jump("if(y < z, 1, 2)")),
+            ("x = |y|^(1/z)", undefined("1/z")),
+        ] {
+            let formula =
+                Formula::parse_in(text, Field::VARIABLES).unwrap_or_else(|fault| panic!("{fault:?}"));
+            let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
+            assert_eq!(field.obstacle(&[Interval { low: -0.01, high: 0.01 }; 3]), expected, "{text}");
+        }
+    }
 }

@@ -93,6 +93,7 @@ pub fn first_root_within(
     }
     // Inside of `inner`, the line is certainly between the ends. Outside, it may be beyond them.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
+    let most = *pieces;
     let mut search = Search {
         line,
         start,
@@ -100,6 +101,7 @@ pub fn first_root_within(
         base,
         range,
         shortest,
+        most,
         pieces,
         undecided: 0,
         is_certain: true,
@@ -163,6 +165,8 @@ struct Search<'l, L> {
     range: &'l RayRange,
     /// Pieces of at most this length are not cut.
     shortest: f64,
+    /// The number of pieces that may be examined, and how many of them are left.
+    most: usize,
     pieces: &'l mut usize,
     /// The number of undecided pieces so far.
     undecided: usize,
@@ -267,7 +271,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
             let at = place(part);
             !self.line.at(at).is_finite() && !self.line.is_left_out(Interval::constant(at))
         };
-        let (quarters, judged) = ([0.25, 0.5, 0.75], MAX_PIECES.saturating_sub(*self.pieces));
+        let (quarters, judged) = ([0.25, 0.5, 0.75], self.most.saturating_sub(*self.pieces));
         let has_no_value = || {
             judged > SOME_PIECES && quarters.into_iter().all(is_infinite)
                 || judged > MANY_PIECES && quarters.into_iter().all(is_beyond)

@@ -24,6 +24,13 @@ use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
 /// hardly decidable with any number of pieces.
 const FEW_PIECES: usize = 32;
 
+/// The maximum number of operations of a search if each piece is evaluated once, as long as that leaves
+/// [`LEAST_PIECES`]. No ray takes longer, however often its formula oscillates.
+const OPERATIONS: u64 = 20_000;
+
+/// The number of pieces that may be examined for any formula.
+const LEAST_PIECES: usize = 128;
+
 /// The maximum number of examined pieces on a ray that stands for others, such as a ray in the space of a copy. With
 /// more pieces, a proof decides.
 const MOST_DRIFTING: usize = 256;
@@ -37,6 +44,8 @@ pub(super) struct ImplicitShape<T> {
     pub low: DVec3,
     pub high: DVec3,
     pub parts: Parts,
+    /// The maximum number of examined pieces on a ray.
+    pub most_pieces: usize,
     /// The evaluation of a scene's formula along lines, if it is a polynomial.
     pub nodes: Option<Nodes>,
 }
@@ -55,6 +64,11 @@ impl<T: Implicit> ImplicitShape<T> {
             None => Some(true),
         }
     }
+}
+
+/// Returns the maximum number of examined pieces on a ray, for a formula that takes so many operations.
+pub(super) fn most_pieces(cost: u64) -> usize {
+    ((OPERATIONS / cost.max(1)) as usize).clamp(LEAST_PIECES, taylor::MAX_PIECES)
 }
 
 /// Whether a surface is kept at a root, and whether that is certain in `f64`.
@@ -104,7 +118,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     /// Returns a bracket of the first hits, for all rays that this one stands for.
     pub fn bracket(&self, range: &RayRange) -> Bracket {
         let stretch = self.stretch();
-        let root = match self.first_root(&stretch, range, MOST_DRIFTING) {
+        let root = match self.first_root(&stretch, range, &mut MOST_DRIFTING.clone()) {
             FirstRoot { root: Some(root), is_certain: true } => root,
             FirstRoot { root: None, is_certain: true } => return Bracket::MISS,
             _ => return Bracket::UNKNOWN,
@@ -146,10 +160,11 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         stretch
     }
 
-    /// Returns the first root of a stretch in a range, after examining at most `pieces` pieces.
-    pub fn first_root(&self, stretch: &Stretch, range: &RayRange, mut pieces: usize) -> FirstRoot {
+    /// Returns the first root of a stretch in a range, after examining at most `pieces` pieces, which it counts
+    /// down.
+    fn first_root(&self, stretch: &Stretch, range: &RayRange, pieces: &mut usize) -> FirstRoot {
         let shortest = shortest(&stretch.outer);
-        taylor::first_root_within(self, stretch, self.closest, range, shortest, &mut pieces)
+        taylor::first_root_within(self, stretch, self.closest, range, shortest, pieces)
     }
 
     /// Tells whether the ray's rounding error is larger than the shape, in arithmetic with `rounding` times the error
@@ -160,13 +175,13 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
 
     pub fn first_hit(&self, range: &RayRange) -> FirstRoot {
         let stretch = self.stretch();
-        let pieces = if self.is_lost(1.0) { FEW_PIECES } else { taylor::MAX_PIECES };
+        let mut pieces = if self.is_lost(1.0) { FEW_PIECES } else { self.shape.most_pieces };
         if !self.shape.has_gaps() {
-            return self.first_root(&stretch, range, pieces);
+            return self.first_root(&stretch, range, &mut pieces);
         }
         let (mut range, mut all_certain) = (*range, true);
         loop {
-            let found = self.first_root(&stretch, &range, pieces);
+            let found = self.first_root(&stretch, &range, &mut pieces);
             let kept = found.root.map(|root| self.kept(root));
             let Kept { is_kept, is_certain } = kept.unwrap_or(Kept { is_kept: true, is_certain: true });
             all_certain &= found.is_certain && is_certain;

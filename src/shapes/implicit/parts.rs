@@ -18,6 +18,10 @@ use tabray_exact::interval::Interval;
 /// The maximum number of halvings of a box: six along each axis of a cube.
 const HALVINGS: usize = 2 * BLOCK;
 
+/// The number of operations of a formula above which its box is halved less often, once for each doubling: parts are
+/// there to save time.
+const CHEAP: u64 = 32;
+
 /// The number of halvings whose parts share a block of memory. The other blocks are allocated when a ray enters them.
 const BLOCK: usize = 9;
 
@@ -41,11 +45,14 @@ pub(super) struct Parts {
     /// 1`. The first block has the parts that are halved less than [`BLOCK`] times, and each other block those within
     /// one part. Made for the first ray.
     known: OnceLock<Box<[Known]>>,
+    halvings: usize,
 }
 
 impl Parts {
-    pub fn new(low: DVec3, high: DVec3) -> Self {
-        Self { low, high, known: OnceLock::new() }
+    /// Returns the parts of a box for a formula that takes so many operations.
+    pub fn new(low: DVec3, high: DVec3, cost: u64) -> Self {
+        let dearer = (cost.max(CHEAP) / CHEAP).ilog2() as usize;
+        Self { low, high, known: OnceLock::new(), halvings: HALVINGS.saturating_sub(dearer).max(BLOCK) }
     }
 
     /// Calls a function with the pieces of a line between two places that may have zeros, in order, until it returns a
@@ -60,7 +67,8 @@ impl Parts {
     ) -> Option<f64> {
         let margin = MARGIN * (self.high - self.low);
         let known = self.known.get_or_init(|| (0..=1 << BLOCK).map(|_| Known::new()).collect());
-        let mut walk = Walk { formula, base, dir, margin, known, visit, far, piece: None };
+        let halvings = self.halvings;
+        let mut walk = Walk { formula, base, dir, margin, known, halvings, visit, far, piece: None };
         walk.part((1, OPEN), [self.low, self.high], (low, high)).or_else(|| walk.search())
     }
 }
@@ -78,6 +86,7 @@ struct Walk<'w, T> {
     dir: DVec3,
     margin: DVec3,
     known: &'w [Known],
+    halvings: usize,
     visit: &'w mut dyn FnMut(f64, f64) -> Option<f64>,
     far: f64,
     /// The piece of the line in the last contiguous parts with possible zeros. It is not searched yet.
@@ -100,7 +109,7 @@ impl<T: Implicit> Walk<'_, T> {
         if known == FREE {
             return self.search();
         }
-        if index >> HALVINGS > 0 {
+        if index >> self.halvings > 0 {
             self.piece = Some((self.piece.map_or(from, |piece| piece.0), to));
             return None;
         }

@@ -4,6 +4,7 @@ use super::shape::Placed;
 use glam::DVec3;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 use tabray_world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
@@ -27,6 +28,10 @@ impl<F: Precise> HitProofs<F> for Placed {
             Some(proven) => F::proofs(proven).slope(own, part),
             None => Dual::fixed(Interval::whole()),
         }
+    }
+
+    fn obstacle(&self, at: [Interval<F>; 3], part: usize) -> Option<Obstacle> {
+        F::proofs(self.body.shape.proven()?).obstacle(self.placement.point(at), part)
     }
 
     fn has_equation(&self, part: usize) -> bool {

@@ -4,6 +4,7 @@ use super::crossings::Crossings;
 use super::solid_part::SolidPart;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Interval;
 use tabray_world::certify::{
     FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, ProofMethods, coarse,
@@ -124,6 +125,10 @@ impl<F: Precise> HitProofs<F> for SolidPart {
             Some(proven) => F::proofs(proven).slope(at, part),
             None => Dual::fixed(Interval::whole()),
         }
+    }
+
+    fn obstacle(&self, at: [Interval<F>; 3], part: usize) -> Option<Obstacle> {
+        F::proofs(self.proven(self.index)?).obstacle(at, part)
     }
 
     fn shading_normal(

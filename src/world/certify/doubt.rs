@@ -4,19 +4,27 @@ use super::hit_proofs::{HitProofs, ProofMethods};
 use crate::geometry::sight::Sight;
 use f256::f256;
 use std::fmt;
+use std::iter::successors;
+use std::sync::Arc;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Wide;
 
 /// Why a proof with 237 bits leaves a ray's first hit of a shape open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Doubt {
     /// The equation and its slope along the ray are 0 at one point, as far as 237 bits tell: where the ray touches the
     /// surface, or where a factor of the equation is squared.
     Touched,
-    /// The equation has no slope there, as where a profile jumps.
-    Jumps,
+    /// The formula may not be defined there, by this operation.
+    Undefined(Arc<str>),
+    /// The equation jumps, as a profile may, or a formula by this operation.
+    Jumps(Option<Arc<str>>),
+    /// The formula is continuous there, but its slope has no bound.
+    Steep,
     /// The ray does not touch the surface, and the equation does not jump: the search needs more digits or more steps.
-    Long,
+    /// What the ray comes to next is where this operation of the formula is not defined, or jumps.
+    Long(Option<Arc<str>>),
     /// The surface is given by u and v, without an equation. Krawczyk's test decides nothing where the derivatives by
     /// u and v are parallel or 0, or where two sheets are equally far, as far as 237 bits tell.
     Singular,
@@ -25,12 +33,18 @@ pub enum Doubt {
 /// Displays the reason, phrased to follow the name of an object.
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Touched => "is 0 without a change of sign",
-            Self::Jumps => "jumps",
-            Self::Singular => "has a pole or a fold there, or meets itself",
-            Self::Long => "takes more than 237 bits, or more steps than are tried",
-        })
+        match self {
+            Self::Touched => f.write_str("is 0 without a change of sign"),
+            Self::Undefined(operation) => write!(f, "may be undefined, by `{operation}`"),
+            Self::Jumps(None) => f.write_str("jumps"),
+            Self::Jumps(Some(operation)) => write!(f, "jumps, by `{operation}`"),
+            Self::Steep => f.write_str("has no bounded slope"),
+            Self::Singular => f.write_str("has a pole or a fold there, or meets itself"),
+            Self::Long(None) => f.write_str("takes more than 237 bits, or more steps than are tried"),
+            Self::Long(Some(operation)) => {
+                write!(f, "takes more than 237 bits, or more steps than are tried, near `{operation}`")
+            }
+        }
     }
 }
 
@@ -38,7 +52,13 @@ impl fmt::Display for Doubt {
 /// uncertainty of a root with 237 bits, and far narrower than that with `f64`. The second is wider than the pieces to
 /// which a search cuts a jump.
 const TOUCH: f64 = 1e-30;
-const JUMP: f64 = 4.0 * f64::EPSILON;
+const JUMP: f64 = 128.0 * f64::EPSILON;
+
+/// How much wider the next place is where an obstacle is looked for.
+const WIDENING: f64 = 16.0;
+
+/// The maximum number of letters of an operation.
+const MAX_LETTERS: usize = 48;
 
 impl Doubt {
     /// Returns why the first hit of a shape is open from a distance on, in lengths of the sight's direction.
@@ -59,10 +79,34 @@ impl Doubt {
         {
             return Self::Touched;
         }
+        let obstacle = |width: f64| {
+            let place = Wide { low: from, high: from * (f256::ONE + f256::from(width)) };
+            HitProofs::<f256>::obstacle(shape, line.at(place), 0)
+        };
         match within(JUMP) {
-            (true, slope) if !slope.is_bounded() => Self::Jumps,
-            _ => Self::Long,
+            (true, slope) if !slope.is_bounded() => match obstacle(JUMP) {
+                Some(Obstacle::Undefined(operation)) => Self::Undefined(shortened(&operation)),
+                Some(Obstacle::Jump(operation)) => Self::Jumps(Some(shortened(&operation))),
+                Some(Obstacle::Slope) => Self::Steep,
+                None => Self::Jumps(None),
+            },
+            _ => {
+                let widths = successors(Some(JUMP), |width| Some(width * WIDENING));
+                let near = widths.take_while(|width| *width < 1.0).find_map(|width| match obstacle(width) {
+                    Some(Obstacle::Undefined(operation) | Obstacle::Jump(operation)) => Some(operation),
+                    _ => None,
+                });
+                Self::Long(near.as_deref().map(shortened))
+            }
         }
+    }
+}
+
+/// Returns the text of an operation, without what is beyond [`MAX_LETTERS`].
+fn shortened(operation: &str) -> Arc<str> {
+    match operation.char_indices().nth(MAX_LETTERS) {
+        Some((end, _)) => format!("{}...", &operation[..end]).into(),
+        None => operation.into(),
     }
 }
 
@@ -98,13 +142,13 @@ mod tests {
     fn what_is_touched_and_what_jumps_are_told_apart() {
         let toward = DVec2::new(0.3, 0.4);
         let sight = Sight::through(DVec3::new(0.5, 0.5, 3.0), toward, DVec2::ONE, DVec2::ONE);
-        for (case, doubt) in [(Case::Squared, Doubt::Touched), (Case::Step, Doubt::Jumps)] {
+        for (case, doubt) in [(Case::Squared, Doubt::Touched), (Case::Step, Doubt::Jumps(None))] {
             let Enclosure::Doubtful(from) = first_hit(&case, &sight, Precision::Octuple) else {
                 panic!("237 bits do not decide it")
             };
             assert_eq!(Doubt::of(&case, &sight, from), doubt);
             let before = from * f256::from(0.99);
-            assert_eq!(Doubt::of(&case, &sight, before), Doubt::Long);
+            assert_eq!(Doubt::of(&case, &sight, before), Doubt::Long(None));
         }
     }
 }

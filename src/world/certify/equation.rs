@@ -52,7 +52,7 @@ pub trait Equation {
     /// Returns the estimated number of arithmetic operations of [`value`](Self::value), if that is a formula of the
     /// scene.
     fn cost(&self) -> usize {
-        1
+        self.field().map_or(1, |field| field.formula().cost() as usize)
     }
 
     /// Returns a positive number where the surface is kept, 0 at its edge, which belongs to it, and a negative number

@@ -5,14 +5,15 @@
 //! shows that.
 
 use super::algebraic;
-use super::along::{PIECES, first_along, most_pieces};
+use super::along::{FINE_OPERATIONS, OPERATIONS, first_along, most_pieces};
 use super::equation::{Equation, HitEnclosure};
 use super::footprint::OverFootprint;
-use super::search::first_possible;
+use super::search;
 use crate::geometry::sight::Line;
 use f256::f256;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::{Fine, Float, Fraction, Interval, Wide};
 use tabray_exact::scalar::{Scalar, per_axis};
 
@@ -34,6 +35,12 @@ pub trait HitProofs<F: Float> {
 
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
+
+    /// Returns what keeps proofs from looking past the points of a part in a box in world coordinates, as far as its
+    /// equation is a formula of the scene.
+    fn obstacle(&self, _at: [Interval<F>; 3], _part: usize) -> Option<Obstacle> {
+        None
+    }
 
     /// Tells whether a part has an equation. For a part without one, [`slope`](Self::slope) knows no value.
     fn has_equation(&self, _part: usize) -> bool {
@@ -97,10 +104,19 @@ impl<E: Equation, F: Precise> HitProofs<F> for E {
         self.value(self.to_local(point).origin)
     }
 
-    fn uv_bounds(&self, at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
-        let point = Line { origin: at.map(Interval::coarse), dir: [Interval::constant(0.0); 3] };
-        Equation::uv_bounds(self, self.to_local(point).origin)
+    fn obstacle(&self, at: [Interval<F>; 3], _part: usize) -> Option<Obstacle> {
+        Some(self.field()?.obstacle(&own_box(self, at)))
     }
+
+    fn uv_bounds(&self, at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
+        Equation::uv_bounds(self, own_box(self, at))
+    }
+}
+
+/// Transforms a box into the coordinates that an equation is written in.
+fn own_box<F: Float>(shape: &impl Equation, at: [Interval<F>; 3]) -> [Interval; 3] {
+    let point = Line { origin: at.map(Interval::coarse), dir: [Interval::constant(0.0); 3] };
+    shape.to_local(point).origin
 }
 
 /// Encloses the gradient of a part's equation at a point: a vector along the normal.
@@ -160,7 +176,7 @@ impl Precise for f64 {
 
     fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
         let hit = algebraic::first_hit::<f64>(shape, line, leaves);
-        hit.unwrap_or_else(|| first_along(shape, line, leaves, PIECES, None))
+        hit.unwrap_or_else(|| first_along(shape, line, leaves, most_pieces(shape, OPERATIONS)))
     }
 
     fn all_along(
@@ -195,14 +211,10 @@ impl Precise for f256 {
             return hit;
         }
         if is_closed(shape) {
-            return first_along(shape, line, leaves, 0, None);
+            return first_along(shape, line, leaves, 0);
         }
-        // What 53 bits exclude need not be examined with 237.
-        let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
-        match first_possible(first_along::<f64>(shape, &coarse, leaves, PIECES, None)) {
-            Some(at) => first_along(shape, line, leaves, most_pieces(shape), Some(at.into())),
-            None => HitEnclosure::Misses,
-        }
+        let pieces = [OPERATIONS, FINE_OPERATIONS].map(|operations| most_pieces(shape, operations));
+        search::first_hit_in_turns(shape, &shape.to_local(*line), leaves, pieces)
     }
 
     fn all_along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
@@ -226,7 +238,7 @@ impl Precise for Fraction {
 
     fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> HitEnclosure<Self> {
         if is_closed(shape) {
-            return first_along(shape, line, leaves, 0, None);
+            return first_along(shape, line, leaves, 0);
         }
         finely(f256::along(shape, &wide(line), leaves))
     }

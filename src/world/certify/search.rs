@@ -3,26 +3,31 @@
 use super::check;
 use super::equation::{HitEnclosure, Values, hit_at, may_be_hit};
 use crate::geometry::sight::Line;
+use f256::f256;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
-use tabray_exact::interval::{Float, Interval};
+use tabray_exact::interval::{Float, Interval, Wide};
 use tabray_exact::jet::Jet;
 use tabray_exact::scalar::{Scalar, per_axis};
 
-/// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of an
-/// ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of
-/// exponential functions take a long time.
-const JUMP: f64 = f64::EPSILON / 16.0;
+/// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: about that of the
+/// shortest piece with `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits
+/// of exponential functions take a long time.
+const JUMP: f64 = 16.0 * f64::EPSILON;
 
 /// The number of pieces after which a search is given up if the shape is smaller than the rounding of the line.
 const FEW_PIECES: usize = 16;
 
-/// The width of the piece that is examined first where coarser numbers leave a hit in doubt, as a fraction of the line
-/// from there on: about that of the shortest piece with `f64`.
-const DOUBTFUL: f64 = 16.0 * f64::EPSILON;
+/// The width of what is examined next to a place where coarser numbers leave a hit in doubt, as a fraction of the whole
+/// line: a little less than that of a piece that is not cut where the value jumps.
+const DOUBTFUL: f64 = 0.99 * JUMP;
+
+/// How much wider that is each time that coarser numbers leave another place in doubt: beside a pole, they may do so
+/// for thousands of such widths.
+const WIDENING: f64 = 64.0;
 
 /// Returns the bounds of the first possible hit with t > 0, with no hit before them.
-pub fn first_possible<F: Float>(hit: HitEnclosure<F>) -> Option<Interval<F>> {
+fn first_possible<F: Float>(hit: HitEnclosure<F>) -> Option<Interval<F>> {
     match hit {
         HitEnclosure::Misses => None,
         HitEnclosure::Hits(at) | HitEnclosure::Edge(at) => Some(at),
@@ -30,49 +35,97 @@ pub fn first_possible<F: Float>(hit: HitEnclosure<F>) -> Option<Interval<F>> {
     }
 }
 
-/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
-/// true start lies on the surface, and is not a hit. If coarser numbers have found the first [possible
-/// hit](first_possible), the search begins there.
+/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line, of which those that were
+/// not examined are left. With `leaves`, the line's true start lies on the surface, and is not a hit.
 pub fn first_hit<F: Float>(
     shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
-    pieces: usize,
-    possible: Option<Interval<F>>,
+    pieces: &mut usize,
 ) -> HitEnclosure<F> {
     let mut places = Vec::new();
-    let found = unchecked(shape, line, leaves, pieces, possible, &mut places);
+    let found = unchecked(shape, line, leaves, pieces, Stretch::From(F::of(0.0)), &mut places).0;
     check::first(shape, line, found, &places)
 }
 
-/// Finds the first hit, and adds the ends of the pieces that have none.
+/// Finds the first hit with t > 0 in 237 bits. Only what 53 bits leave open is examined with 237, and from there on,
+/// 53 bits go on. Each search is given up after a number of pieces; with `leaves`, the line's true start lies on the
+/// surface, and is not a hit.
+pub fn first_hit_in_turns(
+    shape: &(impl Values<Interval> + Values<Wide>),
+    line: &Line<Wide>,
+    leaves: bool,
+    [mut pieces, mut fine_pieces]: [usize; 2],
+) -> HitEnclosure<f256> {
+    let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
+    let (mut places, mut from, mut width) = (Vec::new(), 0.0, DOUBTFUL);
+    let found = loop {
+        let found = unchecked(shape, &coarse, leaves, &mut pieces, Stretch::From(from), &mut places).0;
+        let Some(at) = first_possible(found) else { break HitEnclosure::Misses };
+        // What 53 bits tell apart only in too many pieces, 237 bits do not tell apart in fewer.
+        if pieces == 0 {
+            break HitEnclosure::Doubtful(at.low.into());
+        }
+        let near = Stretch::Near(at.into(), width);
+        let (found, rest) = unchecked(shape, line, leaves, &mut fine_pieces, near, &mut places);
+        let (HitEnclosure::Misses, Some(rest)) = (found, rest) else { break found };
+        let next = rest.to_f64().next_down();
+        if next <= from {
+            break HitEnclosure::Doubtful(rest);
+        }
+        (from, width) = (next, WIDENING * width);
+    };
+    places.sort_by(f64::total_cmp);
+    check::first(shape, line, found, &places)
+}
+
+/// The part of a line in which a hit is searched.
+enum Stretch<F> {
+    /// All from a place on. There is no hit before it.
+    From(F),
+    /// The bounds of the first hit that is possible, and what is next to them, as a fraction of the whole line.
+    Near(Interval<F>, f64),
+}
+
+/// Finds the first hit in a stretch, and adds the ends of the pieces that have none. Also returns the place from which
+/// on nothing was examined, if there is one.
 fn unchecked<F: Float>(
     shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
-    pieces: usize,
-    possible: Option<Interval<F>>,
+    pieces: &mut usize,
+    stretch: Stretch<F>,
     places: &mut Vec<f64>,
-) -> HitEnclosure<F> {
+) -> (HitEnclosure<F>, Option<F>) {
     let zero = F::of(0.0);
-    let Some((mut from, to)) = clipped(shape, line) else { return HitEnclosure::Misses };
-    let possible = possible.unwrap_or(Interval::point(zero));
-    from = from.max(possible.low);
+    let Some((mut from, mut to)) = clipped(shape, line) else { return (HitEnclosure::Misses, None) };
+    let length = to - from;
+    from = from.max(match &stretch {
+        Stretch::From(place) => *place,
+        Stretch::Near(possible, _) => possible.low,
+    });
     if from > to {
-        return HitEnclosure::Misses;
+        return (HitEnclosure::Misses, None);
     }
     if !to.is_finite() {
-        return HitEnclosure::Doubtful(from);
+        return (HitEnclosure::Doubtful(from), None);
     }
     if leaves && from == zero {
         match left(shape, line, to) {
             Some(length) => from = length,
-            None => return HitEnclosure::Doubtful(zero),
+            None => return (HitEnclosure::Doubtful(zero), None),
         }
         if from == to {
-            return HitEnclosure::Misses;
+            return (HitEnclosure::Misses, None);
         }
     }
+    let rest = match stretch {
+        Stretch::From(_) => None,
+        Stretch::Near(possible, width) => {
+            Some(possible.high.max(from + F::of(width) * length)).filter(|rest| *rest < to)
+        }
+    };
+    to = rest.unwrap_or(to);
     // The parameter counts from near the shape, so a piece of the line is not a small difference of large numbers.
     let base = Interval::point(from + F::of(0.5) * (to - from));
     let near = Line { origin: line.at(base), dir: line.dir };
@@ -80,35 +133,33 @@ fn unchecked<F: Float>(
     // or not at all.
     let [low, high] = shape.extent();
     let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
-    let pieces = if is_lost { pieces.min(FEW_PIECES) } else { pieces };
-    let place = |t: F| (Interval::point(t) - base).high;
-    let ends = ((Interval::point(from) - base).low, place(to));
-    let first = possible.high.max(from + F::of(DOUBTFUL) * (to - from));
-    let first = if possible.low > zero && first < to { Some(place(first)) } else { None };
-    search_pieces(shape, &near, (ends, first), base, pieces, places)
+    if is_lost {
+        *pieces = FEW_PIECES.min(*pieces);
+    }
+    let ends = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
+    (search_pieces(shape, &near, ends, length, base, pieces, places), rest)
 }
 
-/// Finds the first hit between two ends of a line whose parameter counts from `base`. The line is first cut at a place
-/// that is given.
+/// Finds the first hit between two ends of a line whose parameter counts from `base`. The line is of this length in the
+/// box of the shape.
 fn search_pieces<F: Float>(
     shape: &dyn Values<Interval<F>>,
     near: &Line<Interval<F>>,
-    ((from, to), first): ((F, F), Option<F>),
+    (from, to): (F, F),
+    length: F,
     base: Interval<F>,
-    pieces: usize,
+    pieces: &mut usize,
     places: &mut Vec<f64>,
 ) -> HitEnclosure<F> {
     let zero = F::of(0.0);
     // A piece shorter than about 8 ulps of the whole is too short to split.
-    let shortest = F::of(8.0) * F::EPSILON * (to - from);
-    let shortest_jump = shortest.max(F::of(JUMP) * (to - from));
+    let shortest = F::of(8.0) * F::EPSILON * length;
+    let shortest_jump = shortest.max(F::of(JUMP) * length);
     let search = Search { shape, line: near };
-    let mut pending = match first {
-        Some(first) => [open_pieces(shape, near, (first, to)), vec![(from, first)]].concat(),
-        None => open_pieces(shape, near, (from, to)),
-    };
-    for _ in 0..pieces {
+    let mut pending = open_pieces(shape, near, (from, to));
+    while *pieces > 0 {
         let Some((low, high)) = pending.pop() else { return HitEnclosure::Misses };
+        *pieces -= 1;
         let piece = Interval { low, high };
         let start = || (base + Interval::point(low)).low.max(zero);
         match search.judge(piece) {
@@ -373,7 +424,6 @@ impl<F: Float> Search<'_, F> {
 mod tests {
     use super::*;
     use crate::certify::equation::Equation;
-    use f256::f256;
     use glam::DVec3;
     use std::cell::Cell;
 
@@ -399,7 +449,7 @@ mod tests {
             origin: [third(1e90), third(0.5), third(0.5)],
             dir: [third(-1.0), third(0.0), third(0.0)],
         };
-        let found = first_hit(&step, &line, false, 2000, None);
+        let found = first_hit(&step, &line, false, &mut 2000);
         assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
         assert!(step.0.get() < 100, "{} evaluations", step.0.get());
     }
@@ -408,7 +458,7 @@ mod tests {
     fn a_jump_is_left_in_doubt_after_a_few_pieces() {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000, None) else {
+        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, &mut 2000) else {
             panic!("a jump is no root")
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");
@@ -433,7 +483,7 @@ mod tests {
     fn a_touch_is_left_in_doubt_after_a_few_pieces() {
         let squared = Squared(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, 2000, None)
+        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, &mut 2000)
         else {
             panic!("no digits tell a touch from a miss")
         };
@@ -447,16 +497,72 @@ mod tests {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
         let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
-        let few = first_hit::<f64>(&step, &line, false, 2000, None);
-        step.0.set(0);
-        let possible = first_possible(few).map(Interval::<f256>::from_f64);
+        first_hit::<f64>(&step, &line, false, &mut 2000);
+        let few = step.0.replace(0);
         let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
-        let found = first_hit::<f256>(&step, &line, false, 2000, possible);
+        let found = first_hit_in_turns(&step, &line, false, [2000; 2]);
         assert!(
             matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 2.3).abs() < 1e-15),
             "{found:?}"
         );
-        assert!(step.0.get() < 80, "{} evaluations", step.0.get());
+        assert!(step.0.get() < few + 20, "{} evaluations, {few} of them with 53 bits", step.0.get());
+    }
+
+    /// A wave whose crests come closer and closer to x = 0, and the number of times that it was evaluated, with 53 bits
+    /// and with more.
+    struct Waves([Cell<usize>; 2]);
+
+    impl Equation for Waves {
+        fn value<N: Scalar>(&self, [x, y, _]: [N; 3]) -> N {
+            count_by_size::<N>(&self.0);
+            (N::constant(1.0) / x).sin() - y
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    fn count_by_size<N>(counts: &[Cell<usize>; 2]) {
+        let count = &counts[usize::from(size_of::<N>() >= size_of::<Interval<f256>>())];
+        count.set(count.get() + 1);
+    }
+
+    #[test]
+    fn a_wave_without_end_is_given_up_and_not_tried_with_more_digits() {
+        let waves = Waves(Default::default());
+        // Above the crests, all the way.
+        let [origin, dir] = [[-2.0, 1.5, 0.5], [1.0, -0.25, 0.0]].map(|of| of.map(Interval::constant));
+        let found = first_hit_in_turns(&waves, &Line { origin, dir }, false, [400, 400]);
+        assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
+        let [few, more] = waves.0.map(Cell::into_inner);
+        assert!(few < 4 * 400 && more == 0, "{few} and {more} evaluations");
+    }
+
+    /// A plane at x = 0.7, and what is nearly one at x = 1/3, with the numbers of evaluations.
+    struct Planes([Cell<usize>; 2]);
+
+    impl Equation for Planes {
+        fn value<N: Scalar>(&self, [x, y, _]: [N; 3]) -> N {
+            count_by_size::<N>(&self.0);
+            let third = x - N::constant(1.0) / N::constant(3.0);
+            (third.powi(2) + N::constant(1e-20)) * (x - N::constant(0.7)) * (y + N::constant(7.0))
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn what_few_digits_leave_open_is_decided_by_more_and_from_there_few_go_on() {
+        let planes = Planes(Default::default());
+        let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::constant));
+        let found = first_hit_in_turns(&planes, &Line { origin, dir }, false, [2000; 2]);
+        let HitEnclosure::Hits(at) = found else { panic!("{found:?}") };
+        assert!((at.low.to_f64() - 2.7).abs() < 1e-15, "{at:?}");
+        let [few, more] = planes.0.map(Cell::into_inner);
+        assert!(few < 400 && more < 120, "{few} and {more} evaluations");
     }
 
     /// A formula that is 0 on one side of a plane, and the number of times that it was evaluated.
@@ -477,7 +583,7 @@ mod tests {
     fn where_a_formula_is_0_all_along_a_piece_it_is_not_cut() {
         let half = Half(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let found = first_hit(&half, &Line { origin, dir }, false, 2000, None);
+        let found = first_hit(&half, &Line { origin, dir }, false, &mut 2000);
         assert!(
             // The box is a little larger than the extent.
             matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 1.0).abs() < 1e-11),

@@ -35,7 +35,8 @@ fn shape(text: &str) -> ImplicitShape<Surface> {
     let formula = Surface(field.ok().flatten().expect(text));
     let [low, high] = formula.bounds();
     let frame = Frame::at(DVec3::new(0.3, -0.2, 0.1));
-    ImplicitShape { formula, degree: None, frame, low, high, parts: Parts::new(low, high), nodes: None }
+    let (parts, most_pieces) = (Parts::new(low, high, 1), usize::MAX);
+    ImplicitShape { formula, degree: None, frame, low, high, parts, most_pieces, nodes: None }
 }
 
 /// Returns pseudorandom numbers from -0.5 to 0.5.
