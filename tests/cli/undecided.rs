@@ -36,7 +36,7 @@ fn a_render_counts_and_shows_the_pixels_that_it_could_not_decide() {
 #[test]
 fn the_operation_that_leaves_pixels_open_is_named() {
     for (formula, reason) in [
-        ("floor(3*x)*y + 0.5", "`s` jumps, by `floor(3*x)`\n"),
+        ("floor(3*x)*y + 0.5", "`s` may jump, by `floor(3*x)`\n"),
         ("sin(x*y)/(x*y) - 0.9", "`s` may be undefined, by `sin(x*y)/(x*y)`\n"),
         ("x^2*exp(y + 0.1*z)", "`s` is 0 without a change of sign\n"),
     ] {

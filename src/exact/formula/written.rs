@@ -47,18 +47,19 @@ pub enum Obstacle {
 }
 
 impl<const N: usize> FieldOf<N> {
-    /// Returns the first operation, in the order of evaluation, that may not be defined at the points of a box, or not
-    /// continuous, if there is one.
+    /// Returns the first operation, in the order of evaluation, that may not be defined at the points of a box, or
+    /// else the first that may not be continuous.
     pub fn obstacle(&self, at: &[Interval]) -> Obstacle {
-        let mut found = None;
+        let (mut undefined, mut jump) = (None, None);
         self.written::<f64>().each(at, |step, seen| {
-            if found.is_none() && !seen.is_continuous() {
-                found = Some((step, seen.is_defined() == Some(true)));
+            if !seen.is_continuous() {
+                let first = if seen.is_defined() == Some(true) { &mut jump } else { &mut undefined };
+                first.get_or_insert(step);
             }
         });
-        let Some((step, is_defined)) = found else { return Obstacle::Slope };
-        let text = self.as_written().text_of(step).to_owned();
-        if is_defined { Obstacle::Jump(text) } else { Obstacle::Undefined(text) }
+        let text = |step: usize| self.as_written().text_of(step).to_owned();
+        let undefined = undefined.map(|step| Obstacle::Undefined(text(step)));
+        undefined.or(jump.map(|step| Obstacle::Jump(text(step)))).unwrap_or(Obstacle::Slope)
     }
 
     /// Returns the evaluation of the formula as it was written.
@@ -432,7 +433,7 @@ mod tests {
         let jump = |text: &str| Obstacle::Jump(text.to_owned());
         for (text, expected) in [
             ("x^2 + y^2 - 1", Obstacle::Slope),
-            ("cbrt(x)*abs(y)", Obstacle::Slope),
+            ("sqrt(abs(x)) + |y|", Obstacle::Slope),
             ("1/cbrt(x - z) - 1", undefined("1/cbrt(x - z)")),
             ("2 - cbrt(x - z)^-1 + y", undefined("cbrt(x - z)^-1")),
             ("sqrt(x + 1)*ln( y ) + z/x", undefined("ln( y )")),
