@@ -6,21 +6,25 @@ use crate::geometry::sight::Line;
 use std::ops::RangeInclusive;
 use tabray_exact::interval::{Float, Interval};
 
-/// The number of arithmetic operations after which a search with 53 bits is given up, if each piece is evaluated once.
-/// Of the rays of 180 wild formulas, those that were decided took at most an eighth of the pieces that this leaves.
-pub(super) const OPERATIONS: usize = 20_000;
+/// When a search is given up.
+pub(super) struct Budget {
+    /// The number of arithmetic operations, if each piece of the line is evaluated once.
+    operations: usize,
+    /// The numbers of pieces that are examined at least and at most, whatever their operations.
+    pieces: RangeInclusive<usize>,
+}
 
-/// The same with 237 bits, where an operation takes as long as a hundred: a hit that 53 bits have left in doubt is
-/// known to within a few units in the last place.
-pub(super) const FINE_OPERATIONS: usize = 2_000;
+/// The budget with 53 bits. Of the rays of 180 wild formulas, those that were decided took at most 300 pieces.
+pub(super) const COARSE: Budget = Budget { operations: 20_000, pieces: 32..=2000 };
 
-/// The number of pieces that are examined however many operations a formula has, and the number after which the
-/// search of any equation is given up.
-const PIECES: RangeInclusive<usize> = 32..=2000;
+/// The budget with 237 bits, where an operation takes as long as a hundred. Those rays took at most 40 pieces.
+pub(super) const FINE: Budget = Budget { operations: 2_000, pieces: 16..=128 };
 
-/// Returns the number of pieces after which a search that may take so many operations is given up.
-pub(super) fn most_pieces(shape: &impl Equation, operations: usize) -> usize {
-    (operations / shape.cost().max(1)).clamp(*PIECES.start(), *PIECES.end())
+impl Budget {
+    /// Returns the number of pieces after which a search is given up.
+    pub fn pieces(&self, shape: &impl Equation) -> usize {
+        (self.operations / shape.cost().max(1)).clamp(*self.pieces.start(), *self.pieces.end())
+    }
 }
 
 /// Finds the first hit of a line given in world coordinates. With `leaves`, the line's true start lies on the shape.

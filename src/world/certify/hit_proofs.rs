@@ -5,7 +5,7 @@
 //! shows that.
 
 use super::algebraic;
-use super::along::{FINE_OPERATIONS, OPERATIONS, first_along, most_pieces};
+use super::along::{COARSE, FINE, first_along};
 use super::equation::{Equation, HitEnclosure};
 use super::footprint::OverFootprint;
 use super::search;
@@ -176,7 +176,7 @@ impl Precise for f64 {
 
     fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
         let hit = algebraic::first_hit::<f64>(shape, line, leaves);
-        hit.unwrap_or_else(|| first_along(shape, line, leaves, most_pieces(shape, OPERATIONS)))
+        hit.unwrap_or_else(|| first_along(shape, line, leaves, COARSE.pieces(shape)))
     }
 
     fn all_along(
@@ -213,7 +213,7 @@ impl Precise for f256 {
         if is_closed(shape) {
             return first_along(shape, line, leaves, 0);
         }
-        let pieces = [OPERATIONS, FINE_OPERATIONS].map(|operations| most_pieces(shape, operations));
+        let pieces = [COARSE.pieces(shape), FINE.pieces(shape)];
         search::first_hit_in_turns(shape, &shape.to_local(*line), leaves, pieces)
     }
 

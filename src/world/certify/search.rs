@@ -530,13 +530,13 @@ mod tests {
     }
 
     #[test]
-    fn a_wave_without_end_is_given_up_and_not_tried_with_more_digits() {
+    fn waves_without_end_are_given_up() {
         let waves = Waves(Default::default());
         let [origin, dir] = [[-2.0, 1.5, 0.5], [1.0, -0.25, 0.0]].map(|of| of.map(Interval::constant));
-        let found = first_hit_in_turns(&waves, &Line { origin, dir }, false, [400, 400]);
+        let found = first_hit_in_turns(&waves, &Line { origin, dir }, false, [400, 20]);
         assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
         let [few, more] = waves.0.map(Cell::into_inner);
-        assert!(few < 4 * 400 && more == 0, "{few} and {more} evaluations");
+        assert!(few <= 4 * 400 && more <= 4 * 20, "{few} and {more} evaluations");
     }
 
     /// A plane at x = 0.7, and what is nearly one at x = 1/3, with the numbers of evaluations.
