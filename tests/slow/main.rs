@@ -12,6 +12,7 @@ mod budget;
 mod chart;
 mod choose;
 mod copy;
+mod counted;
 mod emitted;
 mod extremes;
 mod falsify;

@@ -6,8 +6,10 @@ use tabray_core::scene::Model;
 use tabray_core::scene::model::Object;
 use tabray_core::shapes::implicit::CUT_BY_BOX;
 use tabray_core::world::AnyShape;
-use tabray_core::world::certify::gradient;
+use tabray_core::world::certify::{HitProofs, ProofMethods, gradient};
+use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
+use tabray_exact::scalar::{dot, per_axis};
 
 /// The margin by which cells are enlarged, as a fraction of the numbers that they are made of: rounding is less.
 const MARGIN: f64 = 1e-12;
@@ -68,7 +70,9 @@ impl<'m> Body<'m> {
         if parts.chain([&first.args]).any(|args| args.entity().reads_files()) {
             return Err(NoBody::Mesh);
         }
-        let has_edges = is_solid || is_capped || shape.proven().is_none();
+        // Of a shape of faces, proofs know the equation of one.
+        let has_faces = |proven: &dyn ProofMethods| HitProofs::<f64>::face_of(proven, 0).is_some();
+        let has_edges = is_solid || is_capped || shape.proven().is_none_or(has_faces);
         Ok(Self { shape, bounds, has_edges, is_capped })
     }
 
@@ -83,13 +87,42 @@ impl<'m> Body<'m> {
         self.shape.contains(at, 0.0)
     }
 
+    /// Tells whether a triangle lies inside or outside, by the mean value theorem; `None` where that does not tell.
+    pub fn contains_triangle(&self, corners: [DVec3; 3]) -> Option<bool> {
+        let (low, high) =
+            corners.iter().fold((corners[0], corners[0]), |(low, high), at| (low.min(*at), high.max(*at)));
+        let (middle, margin) = ((low + high) / 2.0, MARGIN * low.abs().max(high.abs()).max_element());
+        let about = |of: f64| Interval { low: of - margin, high: of + margin };
+        let gradient = self.gradient(per_axis(|axis| about(low[axis]).hull(about(high[axis]))))?;
+        let [a, b, c] = corners.map(|at| dot(gradient, per_axis(|axis| about(at[axis] - middle[axis]))));
+        let point = middle.to_array().map(|at| Dual::fixed(Interval::point(at)));
+        let value = HitProofs::<f64>::slope(self.shape.proven()?, point, 0).value + a.hull(b).hull(c);
+        let is_inside = value.high < 0.0;
+        // The formula does not tell where the shape ends.
+        (!value.has_zero() && self.contains_point(middle) == Some(is_inside)).then_some(is_inside)
+    }
+
+    /// Encloses the gradients of the equation in a box; `None` where the surface has edges that they do not show, and
+    /// where they are unbounded.
+    fn gradient(&self, at: [Interval; 3]) -> Option<[Interval; 3]> {
+        let proven = self.shape.proven().filter(|_| !self.has_edges)?;
+        let gradient: [Interval; 3] = gradient(proven, at, 0);
+        gradient.iter().all(|of| of.is_bounded()).then_some(gradient)
+    }
+
+    /// Encloses the gradients of the equation in a cube, like [`gradient`](Self::gradient).
+    pub fn gradient_in(&self, middle: DVec3, half: f64) -> Option<[Interval; 3]> {
+        let half = half + MARGIN * (middle.abs().max_element() + half);
+        self.gradient(middle.to_array().map(|at| Interval { low: at - half, high: at + half }))
+    }
+
     /// Tells whether gradients at any two points of a cube are at less than a right angle: the surface in it is then
     /// a graph over a plane. `None` where gradients do not tell.
     pub fn is_graph(&self, middle: DVec3, half: f64) -> Option<bool> {
-        let proven = self.shape.proven().filter(|_| !self.has_edges)?;
-        let half = half + MARGIN * (middle.abs().max_element() + half);
-        let at = middle.to_array().map(|at| Interval { low: at - half, high: at + half });
-        let gradient: [Interval; 3] = gradient(proven, at, 0);
+        if self.has_edges {
+            return None;
+        }
+        let Some(gradient) = self.gradient_in(middle, half) else { return Some(false) };
         // Products of two different numbers of an interval, not squares of one.
         let products = gradient.map(|Interval { low, high }| (low * low).min(high * high).min(low * high));
         let size = gradient.iter().map(|of| of.low.abs().max(of.high.abs())).fold(0.0, f64::max);

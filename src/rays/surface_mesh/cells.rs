@@ -103,7 +103,7 @@ impl Cells {
     }
 
     /// Returns the place of a cell in the list.
-    fn find(&self, cell: Index) -> Option<usize> {
+    pub fn find(&self, cell: Index) -> Option<usize> {
         self.list.binary_search_by_key(&key(cell), |known| key(*known)).ok()
     }
 

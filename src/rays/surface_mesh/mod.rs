@@ -6,7 +6,7 @@
 //! outside, and each cell is cut into six tetrahedra (H. Freudenthal's, which match from cell to cell). In each of
 //! them, triangles separate the corners inside from those outside. Whatever the corners are, these triangles form
 //! closed two-manifolds. Their vertices are moved along the cells' edges onto the surface. Proofs about the result
-//! hold however it was made. Where they fail, cells are halved again, until they are smaller than the error, unless
+//! hold wherever they are. Where they fail, cells are halved again, until they are smaller than the error, unless
 //! all that fails is how parts are joined at places that smaller cells would not untangle.
 
 mod body;

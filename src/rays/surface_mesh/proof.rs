@@ -31,7 +31,10 @@ pub fn far(
         let mut own = triangles.of_cells[*cell].clone();
         own.any(|face| !is(face as usize))
     };
-    let is_bare = |cell: &usize| {
+    let is_bare = |cell: &usize, slopes: Option<&[Slopes]>| {
+        if slopes.is_some_and(|slopes| is_crossed_once(cells, slopes, body, *cell)) {
+            return false;
+        }
         let faces = cells.around(*cell).flat_map(|other| triangles.of_cells[other].clone());
         let near: Vec<_> = faces.map(|face| triangles.corners(face as usize)).collect();
         !is_covered(body, &near, cells.middle(cells.list[*cell]), half, error)
@@ -50,7 +53,11 @@ pub fn far(
     if !all && !off.is_empty() {
         return off;
     }
-    places(&|cell| off.binary_search(cell).is_ok() || is_bare(cell))
+    let slopes: Option<Vec<_>> =
+        parallel::filled(cells.list.len(), MANY, |cell| Slopes::of(cells, triangles, body, cell, error))
+            .into_iter()
+            .collect();
+    places(&|cell| off.binary_search(cell).is_ok() || is_bare(cell, slopes.as_deref()))
 }
 
 /// Finds the cells in which the surface may turn by a right angle; `None` if gradients do not tell.
@@ -130,8 +137,11 @@ fn outward(triangles: &Triangles, face: usize, error: f64) -> Option<DVec3> {
 fn is_between(body: &Body<'_>, [a, b, c]: [DVec3; 3], outward: DVec3, depth: u32) -> bool {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let (middle, half) = ((low + high) / 2.0, (high - low).max_element() / 2.0);
-    let is = |at: DVec3, inside: bool| body.contains(at, half) == Some(inside);
-    if is(middle + outward, false) && is(middle - outward, true) {
+    let is = |by: DVec3, inside: bool| {
+        body.contains(middle + by, half) == Some(inside)
+            || body.contains_triangle([a, b, c].map(|at| at + by)) == Some(inside)
+    };
+    if is(outward, false) && is(-outward, true) {
         return true;
     }
     if depth == DEEPEST || half < LEAST * outward.length() {
@@ -141,6 +151,88 @@ fn is_between(body: &Body<'_>, [a, b, c]: [DVec3; 3], outward: DVec3, depth: u32
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         .into_iter()
         .all(|part| is_between(body, part, outward, depth + 1))
+}
+
+/// The directions along axes in which what a cell contains changes from inside to outside: a bit for each.
+#[derive(Clone, Copy, Default)]
+struct Slopes {
+    /// Those along which the equation certainly rises all over the cell: lines cross the surface once at most.
+    rising: u8,
+    /// Those along which each point of the cell's triangles is certainly within the error of the surface.
+    near: u8,
+}
+
+/// The least part of a gradient in a direction along which triangles are examined. One of three parts is larger.
+const STEEP: f64 = 0.4;
+
+/// The maximum number of cells that a line follows to each side.
+const FARTHEST: usize = 4;
+
+/// The maximum distance of a vertex from its cell, in halves of a cell: the least between vertices and ends of edges is
+/// twice as much.
+const OFF: f64 = 1.0 / 512.0;
+
+/// Returns the vector of length 1 in a direction.
+fn along(direction: usize) -> DVec3 {
+    DVec3::AXES[direction / 2] * if direction % 2 == 0 { 1.0 } else { -1.0 }
+}
+
+impl Slopes {
+    /// Finds the directions of a cell; `None` if vertices are not where they belong.
+    fn of(cells: &Cells, triangles: &Triangles, body: &Body<'_>, cell: usize, error: f64) -> Option<Self> {
+        let (middle, half) = (cells.middle(cells.list[cell]), cells.side() / 2.0);
+        let faces = triangles.of_cells[cell].clone().map(|face| triangles.corners(face as usize));
+        let is_off = |at: DVec3| (at - middle).abs().max_element() > half * (1.0 + OFF);
+        if faces.clone().flatten().any(is_off) {
+            return None;
+        }
+        let mut slopes = Self::default();
+        let Some(gradient) = body.gradient_in(middle, half) else { return Some(slopes) };
+        let steepness = DVec3::from(gradient.map(|of| of.middle())).normalize_or_zero();
+        for direction in 0..6 {
+            let (part, along) = (gradient[direction / 2], along(direction));
+            let is_rising = if direction % 2 == 0 { part.low > 0.0 } else { part.high < 0.0 };
+            let is_near = |corners: [DVec3; 3]| is_between(body, corners, error * along, 0);
+            let is_steep = || along.dot(steepness) > STEEP;
+            slopes.rising |= u8::from(is_rising) << direction;
+            slopes.near |=
+                u8::from(faces.len() == 0 || is_steep() && faces.clone().all(is_near)) << direction;
+        }
+        Some(slopes)
+    }
+}
+
+/// Tells whether each point of the surface in a cell is certainly within the error of the mesh, because each line along
+/// an axis through the cell crosses both once.
+///
+/// The line leads from a cell inside through cells along which the equation rises to a cell outside. So it also leads
+/// through the mesh, which separates the corners of these two, and whose vertices hardly leave their own cells. A point
+/// where it meets the mesh, in a triangle of these cells or of those around them, is on the line between a point inside
+/// and one outside, each as far away as the error, and the only point of the surface on the line is between these, too.
+fn is_crossed_once(cells: &Cells, slopes: &[Slopes], body: &Body<'_>, cell: usize) -> bool {
+    let half = cells.side() / 2.0;
+    let is_clear = |cell: usize, direction: usize| {
+        let is = |of: u8| of >> direction & 1 == 1;
+        is(slopes[cell].rising) && cells.around(cell).all(|other| is(slopes[other].near))
+    };
+    // Follows cells to one side until one that is not crossed, and tells whether that is outside where the
+    // equation rises, and else inside.
+    let ends = |direction: usize, is_forward: bool| {
+        let is_up = (direction % 2 == 0) == is_forward;
+        let mut at = cells.list[cell];
+        for _ in 0..FARTHEST {
+            let place = at[direction / 2];
+            at[direction / 2] = if is_up { place + 1 } else { place.wrapping_sub(1) };
+            match cells.find(at) {
+                _ if place == 0 && !is_up => return false,
+                None => return body.contains(cells.middle(at), half) == Some(!is_forward),
+                Some(next) if !is_clear(next, direction) => return false,
+                Some(_) => {}
+            }
+        }
+        false
+    };
+    (0..6).any(|direction| is_clear(cell, direction) && ends(direction, true) && ends(direction, false))
 }
 
 /// Tells whether each point of the surface in a cube is certainly within the error of one of these triangles.

@@ -1,5 +1,6 @@
 //! Tests of meshes of objects.
 
+use super::triangles::Vertex;
 use super::*;
 use std::path::Path;
 use std::sync::Mutex;
@@ -122,6 +123,34 @@ fn nodes_are_named_where_parts_meet() {
         "{tangled:?}"
     );
     assert!(made.far.is_empty());
+}
+
+#[test]
+fn what_is_moved_off_the_surface_is_found() {
+    let (model, error) = (model(BALL), 0.01);
+    let body = Body::of(&model, "a").expect("a closed object");
+    let mut cells = Cells::enclosing(&body);
+    (0..4).for_each(|_| cells.halve(&body, usize::MAX, &|_| ()).expect("any number of cells"));
+    let mut triangles = Triangles::of(&cells, &body, &|_| ());
+    let far = |triangles: &Triangles| proof::far(&cells, triangles, &body, (error, true), &|_| ());
+    assert!(far(&triangles).is_empty());
+    for by in [-1.5, 1.5] {
+        for vertex in (0..triangles.vertices.len()).step_by(101) {
+            let Vertex { at: before, slack } = triangles.vertices[vertex];
+            triangles.vertices[vertex] = Vertex { at: before * (1.0 + by * error), slack: f64::INFINITY };
+            let places: Vec<_> = far(&triangles).into_iter().map(|cell| cells.cube(cell)).collect();
+            // A vertex is on the edge of its cell, rounded.
+            let distance = |[low, high]: &[DVec3; 2]| before.distance(before.clamp(*low, *high));
+            assert!(places.iter().any(|cell| distance(cell) < 1e-6), "{before} {by}: {places:?}");
+            triangles.vertices[vertex] = Vertex { at: before, slack };
+        }
+    }
+}
+
+#[test]
+fn how_the_faces_of_a_box_are_joined_is_not_examined() {
+    let made = meshed("box a { material m  center 0 0 0  size 2 2 2 }", 0.2);
+    assert!(made.far.is_empty() && made.tangled.is_none());
 }
 
 #[test]
