@@ -14,8 +14,13 @@ pub fn grouped(line: clap::Command) -> clap::Command {
     };
     let _ = write!(template, "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n");
     for group in Group::ALL {
+        let commands = Command::of(group);
+        // Those of a guest that is not linked; `help` itself is among the tools.
+        if commands.is_empty() && group != Group::Tools {
+            continue;
+        }
         let _ = write!(template, "\n{header}{}:{header:#}\n", group.heading());
-        for name in Command::of(group).into_iter().map(Command::name) {
+        for name in commands.into_iter().map(Command::name) {
             // As it is: each start of the program makes this, and taking styles out takes longer than a small image.
             let about = line.find_subcommand(name).and_then(clap::Command::get_about);
             row(&mut template, name, about.map(|about| about.ansi().to_string()).unwrap_or_default());
@@ -24,4 +29,16 @@ pub fn grouped(line: clap::Command) -> clap::Command {
     row(&mut template, "help", "Explain a command and its options".to_owned());
     let _ = write!(template, "\n{header}Options:{header:#}\n{{options}}{{after-help}}");
     line.help_template(template)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::line;
+
+    // No guest is linked here, and all commands about rays are guests'.
+    #[test]
+    fn a_group_without_commands_has_no_heading() {
+        let help = line().render_help().to_string();
+        assert!(help.contains("\nScenes:\n") && !help.contains("\nRays:\n"), "{help}");
+    }
 }
