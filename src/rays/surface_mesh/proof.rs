@@ -174,7 +174,7 @@ const OFF: f64 = 1.0 / 512.0;
 
 /// Returns the vector of length 1 in a direction.
 fn along(direction: usize) -> DVec3 {
-    DVec3::AXES[direction / 2] * if direction % 2 == 0 { 1.0 } else { -1.0 }
+    DVec3::AXES[direction / 2] * if direction.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 impl Slopes {
@@ -218,7 +218,7 @@ fn is_crossed_once(cells: &Cells, slopes: &[Slopes], body: &Body<'_>, cell: usiz
     // Follows cells to one side until one that is not crossed, and tells whether that is outside where the
     // equation rises, and else inside.
     let ends = |direction: usize, is_forward: bool| {
-        let is_up = (direction % 2 == 0) == is_forward;
+        let is_up = direction.is_multiple_of(2) == is_forward;
         let mut at = cells.list[cell];
         for _ in 0..FARTHEST {
             let place = at[direction / 2];

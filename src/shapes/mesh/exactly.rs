@@ -36,8 +36,8 @@ impl Surface {
         let exact = exact_line(&fine)?;
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
         let line = WholeLine::new(&exact)?;
-        let (mut seen, mut faces): (Vec<(u32, Seen)>, Vec<(Crossing, usize)>) =
-            (Vec::with_capacity(8), Vec::with_capacity(8));
+        let mut seen: Vec<(u32, Seen)> = Vec::with_capacity(8);
+        let mut faces: Vec<(Crossing, usize)> = Vec::with_capacity(8);
         let (mut end, mut is_known) = (f64::INFINITY, true);
         self.tree.along(&coarse, &mut |face| {
             if is_missed(&coarse, self.corners(face)) {
