@@ -26,6 +26,10 @@ const DOUBTFUL: f64 = 0.99 * JUMP;
 /// for thousands of such widths.
 const WIDENING: f64 = 64.0;
 
+/// The length of pieces of a line up to which rounding may be why a search with 53 bits takes too many of them, as a
+/// fraction of the distance.
+const ROUNDED: f64 = 1e-8;
+
 /// Returns the bounds of the first possible hit with t > 0, with no hit before them.
 fn first_possible<F: Float>(hit: HitEnclosure<F>) -> Option<Interval<F>> {
     match hit {
@@ -60,11 +64,15 @@ pub fn first_hit_in_turns(
     let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
     let (mut places, mut from, mut width) = (Vec::new(), 0.0, DOUBTFUL);
     let found = loop {
-        let found = unchecked(shape, &coarse, leaves, &mut pieces, Stretch::From(from), &mut places).0;
+        let stretch = Stretch::From(from);
+        let (found, end) = unchecked(shape, &coarse, leaves, &mut pieces, stretch, &mut places);
         let Some(at) = first_possible(found) else { break HitEnclosure::Misses };
-        // What 53 bits tell apart only in too many pieces, 237 bits do not tell apart in fewer.
         if pieces == 0 {
-            break HitEnclosure::Doubtful(at.low.into());
+            // What is too much for 53 bits although pieces are far longer than their rounding is so for 237, too.
+            if end.is_some_and(|end| end - at.low > ROUNDED * end) {
+                break HitEnclosure::Doubtful(at.low.into());
+            }
+            width = 1.0;
         }
         let near = Stretch::Near(at.into(), width);
         let (found, rest) = unchecked(shape, line, leaves, &mut fine_pieces, near, &mut places);
@@ -88,7 +96,7 @@ enum Stretch<F> {
 }
 
 /// Finds the first hit in a stretch, and adds the ends of the pieces that have none. Also returns the place from which
-/// on nothing was examined, if there is one.
+/// on nothing was examined, if there is one, or the end of the piece at which the search was given up.
 fn unchecked<F: Float>(
     shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
@@ -137,11 +145,12 @@ fn unchecked<F: Float>(
         *pieces = FEW_PIECES.min(*pieces);
     }
     let ends = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
-    (search_pieces(shape, &near, ends, length, base, pieces, places), rest)
+    let (found, end) = search_pieces(shape, &near, ends, length, base, pieces, places);
+    (found, end.or(rest))
 }
 
 /// Finds the first hit between two ends of a line whose parameter counts from `base`. The line is of this length in the
-/// box of the shape.
+/// box of the shape. Also returns the end of the piece at which the search was given up.
 fn search_pieces<F: Float>(
     shape: &dyn Values<Interval<F>>,
     near: &Line<Interval<F>>,
@@ -150,7 +159,7 @@ fn search_pieces<F: Float>(
     base: Interval<F>,
     pieces: &mut usize,
     places: &mut Vec<f64>,
-) -> HitEnclosure<F> {
+) -> (HitEnclosure<F>, Option<F>) {
     let zero = F::of(0.0);
     // A piece shorter than about 8 ulps of the whole is too short to split.
     let shortest = F::of(8.0) * F::EPSILON * length;
@@ -158,7 +167,7 @@ fn search_pieces<F: Float>(
     let search = Search { shape, line: near };
     let mut pending = open_pieces(shape, near, (from, to));
     while *pieces > 0 {
-        let Some((low, high)) = pending.pop() else { return HitEnclosure::Misses };
+        let Some((low, high)) = pending.pop() else { return (HitEnclosure::Misses, None) };
         *pieces -= 1;
         let piece = Interval { low, high };
         let start = || (base + Interval::point(low)).low.max(zero);
@@ -170,10 +179,10 @@ fn search_pieces<F: Float>(
                     continue;
                 }
                 if distance.low <= zero {
-                    return HitEnclosure::Doubtful(zero);
+                    return (HitEnclosure::Doubtful(zero), None);
                 }
                 if let Some(hit) = hit_at(shape, near, root, distance) {
-                    return hit;
+                    return (hit, None);
                 }
             }
             // A value that is exactly 0 where a short piece ends is hardly doubted less where a shorter one does.
@@ -186,19 +195,19 @@ fn search_pieces<F: Float>(
             // A root that is certainly cut off is no hit.
             Judgement::Open | Judgement::Jump => {
                 if may_be_hit(shape, near, piece) {
-                    return HitEnclosure::Doubtful(start());
+                    return (HitEnclosure::Doubtful(start()), None);
                 }
             }
             Judgement::Touch(at) => {
                 if may_be_hit(shape, near, at) {
-                    return HitEnclosure::Doubtful((base + at).low.max(zero));
+                    return (HitEnclosure::Doubtful((base + at).low.max(zero)), None);
                 }
             }
         }
     }
-    HitEnclosure::Doubtful(
-        pending.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)),
-    )
+    let (low, high) = pending.pop().unwrap_or((zero, zero));
+    let place = |t: F| (base + Interval::point(t)).low.max(zero);
+    (HitEnclosure::Doubtful(place(low)), Some(place(high)))
 }
 
 /// Returns the pieces of a line between two places on which the value may be 0, the nearest one last.
