@@ -36,7 +36,7 @@ pub struct Plan<'m> {
     pub unbounded: Vec<usize>,
     /// The indices and bounding boxes of the objects with bounds, unless they are in `tree`.
     pub(crate) bounded: Vec<(usize, Aabb)>,
-    /// The objects with bounds, if there are at least [`TREE`].
+    /// The objects with bounds, if there are at least `TREE`.
     pub tree: Option<Bvh>,
     /// The objects that look the same, where there are many and no ray continues.
     pub(crate) same_look: Option<SameLook>,

@@ -189,7 +189,7 @@ pub fn on_lights(cpu: Cpu, samples: &Samples, light: usize, x: &mut [f64], y: &m
     draw(cpu, samples, on_light(light), x, y);
 }
 
-/// Writes the result of [`on_lens`](Sample::on_lens) for each sample to `x` and `y`.
+/// Writes the result of `Sample::on_lens` for each sample to `x` and `y`.
 pub fn on_lenses(cpu: Cpu, samples: &Samples, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, ON_LENS, x, y);
     on_discs(cpu, x, y);

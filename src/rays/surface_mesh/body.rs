@@ -110,7 +110,7 @@ impl<'m> Body<'m> {
         gradient.iter().all(|of| of.is_bounded()).then_some(gradient)
     }
 
-    /// Encloses the gradients of the equation in a cube, like [`gradient`](Self::gradient).
+    /// Encloses the gradients of the equation in a cube, like `gradient`.
     pub fn gradient_in(&self, middle: DVec3, half: f64) -> Option<[Interval; 3]> {
         let half = half + MARGIN * (middle.abs().max_element() + half);
         self.gradient(middle.to_array().map(|at| Interval { low: at - half, high: at + half }))
