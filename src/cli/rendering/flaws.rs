@@ -71,13 +71,22 @@ fn warn_of_undecided(undecided: &Undecided, model: &Model) {
             count(undecided.pixels() as usize, "pixel"),
             named.join("; ")
         ),
-        Some(if undecided.0.keys().any(|(_, doubt)| *doubt == Doubt::Touched) {
-            "a surface that rays touch but do not cross may be missing there, for example where a factor of a \
-             formula is squared; `--aov undecided` shows these pixels"
-        } else {
-            "what is seen there is likely but not proven; `--aov undecided` shows these pixels"
-        }),
+        Some(&format!("{}; `--aov undecided` shows these pixels", cure(undecided))),
     );
+}
+
+/// Returns what may be wrong at pixels that are not decided, and what would be decided.
+fn cure(undecided: &Undecided) -> &'static str {
+    let any = |is: fn(&Doubt) -> bool| undecided.0.keys().any(|(_, doubt)| is(doubt));
+    if any(|doubt| *doubt == Doubt::Touched) {
+        "a surface that rays touch but do not cross may be missing there, for example where a factor of a formula is \
+         squared"
+    } else if any(|doubt| matches!(doubt, Doubt::Undefined(_) | Doubt::Jumps(Some(_)) | Doubt::Long(Some(_))))
+    {
+        "what is drawn there is not proven; a formula that is defined and continuous there can be decided"
+    } else {
+        "what is drawn there is not proven"
+    }
 }
 
 fn warn_of_cuts(cuts: &BudgetCuts, rules: Rules) {

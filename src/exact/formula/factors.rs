@@ -1,9 +1,9 @@
 //! Repeated factors of a formula. Where such a factor is 0, the formula does not change its sign, or its slope is 0.
 
-use super::Formula;
 use super::field::Field;
 use super::rational::Rational;
 use super::step::{Function, Step};
+use super::{Formula, value_of};
 use crate::text;
 use std::sync::Arc;
 
@@ -67,7 +67,7 @@ impl<'s> Factors<'s> {
     fn add(&mut self, of: &'s [Step], power: u32) -> f64 {
         let Some((last, operands)) = of.split_last() else { return 1.0 };
         if !has_variable(of) {
-            let value: f64 = Formula::new(String::new(), &[], of.to_vec()).at(0.0);
+            let value = value_of(of);
             // A constant factor of 0 counts like any other factor.
             if value != 0.0 && value.is_finite() {
                 return if value < 0.0 && !power.is_multiple_of(2) { -1.0 } else { 1.0 };

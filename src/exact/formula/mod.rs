@@ -55,14 +55,18 @@ pub struct Formula {
 /// The number of registers that is enough for most formulas.
 const FEW_REGISTERS: usize = 6;
 
+/// Returns the value of operations without variables.
+fn value_of(steps: &[Step]) -> f64 {
+    Formula::new(String::new(), &[], steps.to_vec()).at(0.0)
+}
+
 impl OwnFunction {
     /// Parses a function with these arguments.
     ///
     /// # Errors
     /// Returns the first place where the text is not a formula in these arguments.
     pub fn parse(arguments: &[&str], text: &str, named: Named<'_>) -> Result<Self, FormulaFault> {
-        let value = |steps: &[Step]| Formula::new(String::new(), &[], steps.to_vec()).at(0.0);
-        let Operations { steps, pieces, .. } = parser::parse(text, arguments, named, value)?;
+        let Operations { steps, pieces, .. } = parser::parse(text, arguments, named, value_of)?;
         Ok(Self::new(arguments.len(), steps, pieces))
     }
 }
@@ -95,9 +99,7 @@ impl Formula {
         variables: &'static [&'static str],
         named: Named<'_>,
     ) -> Result<Self, FormulaFault> {
-        let Operations { steps, pieces, has_calls, .. } = parser::parse(text, variables, named, |steps| {
-            Self::new(String::new(), &[], steps.to_vec()).at(0.0)
-        })?;
+        let Operations { steps, pieces, has_calls, .. } = parser::parse(text, variables, named, value_of)?;
         let mut written = own::joined(&pieces);
         if written.contains('\n') || written.contains("  ") {
             written = written.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -116,11 +118,9 @@ impl Formula {
     /// Returns the part of the text that an operation comes from, with its operands. Of a function that is itself a
     /// formula, that is the whole call.
     fn text_of(&self, step: usize) -> &str {
-        let parsed = parser::parse(&self.text, self.variables, &|_| None, |steps| {
-            Self::new(String::new(), &[], steps.to_vec()).at(0.0)
-        });
-        let Ok(Operations { parts, .. }) = parsed.map_err(drop) else { return &self.text };
-        let part = parts.into_iter().find(|part| part.steps.contains(&step));
+        let parsed = parser::parse(&self.text, self.variables, &|_| None, value_of);
+        let mut parts = parsed.into_iter().flat_map(|parsed| parsed.parts);
+        let part = parts.find(|part| part.steps.contains(&step));
         part.map_or(&self.text, |part| self.text[part.text].trim_end())
     }
 

@@ -248,13 +248,12 @@ impl<'t> Parser<'t> {
         self.signed()?;
         self.depth -= 1;
         let is_constant = |step: &Step| !matches!(step, Step::Variable(_) | Step::Spline);
-        let is_whole = |number: f64| number.fract() == 0.0 && number.abs() <= f64::from(MAX_POWER);
         let mut power = Step::Call(Function::Pow);
         if self.steps[exponent..].iter().all(is_constant) {
             let number = (self.value)(&self.steps[exponent..]);
             self.forget(exponent);
             self.steps.truncate(exponent);
-            if is_whole(number) {
+            if number.fract() == 0.0 && number.abs() <= f64::from(MAX_POWER) {
                 power = Step::Powi(number as i32);
             } else {
                 self.steps.push(Step::Number(number));

@@ -39,16 +39,16 @@ fn first_possible<F: Float>(hit: HitEnclosure<F>) -> Option<Interval<F>> {
     }
 }
 
-/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line, of which those that were
-/// not examined are left. With `leaves`, the line's true start lies on the surface, and is not a hit.
+/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
+/// true start lies on the surface, and is not a hit.
 pub fn first_hit<F: Float>(
     shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
-    pieces: &mut usize,
+    mut pieces: usize,
 ) -> HitEnclosure<F> {
     let mut places = Vec::new();
-    let found = unchecked(shape, line, leaves, pieces, Stretch::From(F::of(0.0)), &mut places).0;
+    let found = unchecked(shape, line, leaves, &mut pieces, Stretch::From(F::of(0.0)), &mut places).0;
     check::first(shape, line, found, &places)
 }
 
@@ -458,7 +458,7 @@ mod tests {
             origin: [third(1e90), third(0.5), third(0.5)],
             dir: [third(-1.0), third(0.0), third(0.0)],
         };
-        let found = first_hit(&step, &line, false, &mut 2000);
+        let found = first_hit(&step, &line, false, 2000);
         assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
         assert!(step.0.get() < 100, "{} evaluations", step.0.get());
     }
@@ -467,7 +467,7 @@ mod tests {
     fn a_jump_is_left_in_doubt_after_a_few_pieces() {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, &mut 2000) else {
+        let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000) else {
             panic!("a jump is no root")
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-14, "{from:?}");
@@ -492,8 +492,7 @@ mod tests {
     fn a_touch_is_left_in_doubt_after_a_few_pieces() {
         let squared = Squared(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, &mut 2000)
-        else {
+        let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, 2000) else {
             panic!("no digits tell a touch from a miss")
         };
         let third = f256::from(7.0) / f256::from(3.0);
@@ -506,7 +505,7 @@ mod tests {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
         let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
-        first_hit::<f64>(&step, &line, false, &mut 2000);
+        first_hit::<f64>(&step, &line, false, 2000);
         let few = step.0.replace(0);
         let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
         let found = first_hit_in_turns(&step, &line, false, [2000; 2]);
@@ -592,7 +591,7 @@ mod tests {
     fn where_a_formula_is_0_all_along_a_piece_it_is_not_cut() {
         let half = Half(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let found = first_hit(&half, &Line { origin, dir }, false, &mut 2000);
+        let found = first_hit(&half, &Line { origin, dir }, false, 2000);
         assert!(
             // The box is a little larger than the extent.
             matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 1.0).abs() < 1e-11),
