@@ -35,7 +35,7 @@ pub struct RenderCallbacks<'o> {
 /// thread where there are none. The deepest chains of reflections may take a stack of [`STACK`] bytes.
 ///
 /// ```
-/// use tabray_core::render::{Renderer, renderer::STACK};
+/// use tabray_render::{Renderer, renderer::STACK};
 ///
 /// let pool = rayon::ThreadPoolBuilder::new().num_threads(2).stack_size(STACK).build()?;
 /// let renderer = Renderer::on_threads(pool);

@@ -37,8 +37,8 @@ impl Surface {
     /// faces stay as they are.
     ///
     /// ```
-    /// use tabray_core::glam::DVec3;
-    /// use tabray_core::shapes::mesh::{ArrayError, Surface};
+    /// use glam::DVec3;
+    /// use tabray_shapes::mesh::{ArrayError, Surface};
     ///
     /// let corners = || vec![DVec3::ZERO, DVec3::X, DVec3::Y];
     /// assert_eq!(Surface::of_arrays(corners(), vec![[0, 1, 2]]).map(|surface| surface.face_count()), Ok(1));

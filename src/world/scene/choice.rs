@@ -128,7 +128,8 @@ impl Choice for Accuracy {
 /// Makes enums choices: each with its noun, and its alternatives with their names and meanings.
 ///
 /// ```
-/// use tabray_core::prelude::*;
+/// use tabray_world::choices;
+/// use tabray_world::scene::choice::Choice;
 ///
 /// #[derive(Clone, Copy)]
 /// enum Weave {
