@@ -140,3 +140,17 @@ fn plan_says_how_many_samples_pixels_take() {
             .ends_with("until its error is estimated to be at most 2.55 of 255 levels")
     );
 }
+
+#[test]
+fn choose_measures_one_sample_under_a_sky_that_lights() {
+    let folder = folder();
+    let text = "look_at c { pixeldim 32 24 position 0 2.5 6 target 0 0.8 0 angle 45 }
+        material w { diffuse 0.7 0.7 0.7 }
+        plane back { material w normal 0 0 1 point 0 0 -3 }
+        sky s { lights yes horizon 0.5 0.5 0.5 zenith 0.1 0.1 0.9 ground 0.1 0.1 0.1 }";
+    fs::write(folder.path().join("sky.ray"), text).expect("a file");
+    for goal in [["--max-error", "0.5"], ["--max-time", "1"]] {
+        let (status, _, err) = outcome(tabray(&folder).args(["choose", "sky.ray"]).args(goal));
+        assert!(matches!(status, 0 | 1) && !err.contains("internal error"), "{err}");
+    }
+}

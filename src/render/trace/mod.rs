@@ -73,7 +73,7 @@ pub fn within_budgets(
     scratch.places = [x.collect(), y.collect()];
     scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
     let Scratch { places, lens, .. } = &mut scratch;
-    group.fill_primary(Cpu::best(), &plan.camera, plan.depth.as_ref(), places, lens, pixels.len());
+    group.fill_primary(Cpu::best(), (&plan.camera, false), plan.depth.as_ref(), places, lens, pixels.len());
     group.ray_budget[..budgets.len()].copy_from_slice(budgets);
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
     tracer.colours(&mut group, &mut colours);
@@ -341,7 +341,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 sample::on_lenses(cpu, samples, x, y);
             }
         }
-        group.fill_primary(cpu, &plan.camera, plan.depth.as_ref(), places, lens, len);
+        let is_sampled = !samples.is_empty();
+        group.fill_primary(cpu, (&plan.camera, is_sampled), plan.depth.as_ref(), places, lens, len);
     }
 
     /// Reports a pixel that lacks light. `missing` bounds that light, in any channel; under the free rules, it is the

@@ -89,18 +89,19 @@ impl RayGroup {
     }
 
     /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom,
-    /// and through as many points of the lens, in its radius, if there are any.
+    /// and through as many points of the lens, in its radius, if there are any. `is_sampled` tells whether each has a
+    /// sample.
     pub fn fill_primary(
         &mut self,
         cpu: Cpu,
-        camera: &Sensor,
+        (camera, is_sampled): (&Sensor, bool),
         depth: Option<&Depth>,
         places: &mut [Vec<f64>; 2],
         lens: &mut [Vec<f64>; 2],
         len: usize,
     ) {
         let origins = camera.origins();
-        self.begin(origins.middle, len, camera.samples > 1 || camera.adaptive.is_some(), depth);
+        self.begin(origins.middle, len, is_sampled, depth);
         self.is_from_one = origins.radius == 0.0;
         let count = self.padded();
         for each in places.iter_mut().chain(lens.iter_mut().filter(|each| !each.is_empty())) {
