@@ -33,7 +33,7 @@ static Z_COLOUR: Pparm<Rgb> = colour!("zcolour", "zcolor", "z", Rgb::new(0.15, 0
 const TABLE: Table = &[&CENTER, &TO, &FROM, &TICKS, &RADIUS, &X_COLOUR, &Y_COLOUR, &Z_COLOUR];
 
 /// The most ticks of an axis.
-const MOST_TICKS: f64 = 100.0;
+const MAX_TICKS: f64 = 100.0;
 
 /// The radius and the length of an arrowhead, and the radius and half the thickness of a tick, in radii of the rods.
 const HEAD: [f64; 2] = [3.0, 9.0];
@@ -47,8 +47,8 @@ inventory::submit! {
             let message = format!("has arrowheads that are {} long, and an axis that is not longer", HEAD[1] * radius);
             return Err(refusal("to", message, "an arrowhead is nine times as long as the `radius` of its rod"));
         }
-        if ticks > 0.0 && (to - from).max_element() / ticks > MOST_TICKS {
-            let message = format!("has more than {MOST_TICKS} ticks on an axis");
+        if ticks > 0.0 && (to - from).max_element() / ticks > MAX_TICKS {
+            let message = format!("has more than {MAX_TICKS} ticks on an axis");
             return Err(refusal("ticks", message, "set them farther apart, or leave them out: `ticks 0`"));
         }
         let material = args.material();

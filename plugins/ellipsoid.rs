@@ -26,6 +26,6 @@ pub fn body(args: &Args, scale: DVec3) -> Body {
     })
 }
 
-fn exact<A: Bounded>(ellipsoid: Ellipsoid<A>) -> AnyShape {
+fn exact<A: NotClassic>(ellipsoid: Ellipsoid<A>) -> AnyShape {
     Shape::new(ellipsoid).bracketed().certified().into()
 }

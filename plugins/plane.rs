@@ -32,7 +32,7 @@ pub fn shape(args: &Args) -> AnyShape {
     }
 }
 
-fn exact<A: Bounded>(plane: Plane<A>) -> AnyShape {
+fn exact<A: NotClassic>(plane: Plane<A>) -> AnyShape {
     Shape::new(plane.from_nearest_point()).bracketed().certified().into()
 }
 

@@ -48,6 +48,6 @@ fn shape(args: &Args, corners: [DVec3; 2]) -> AnyShape {
     }
 }
 
-fn exact<A: Bounded>(quadric: Quadric<A>) -> AnyShape {
+fn exact<A: NotClassic>(quadric: Quadric<A>) -> AnyShape {
     Shape::new(quadric).bracketed().certified().into()
 }

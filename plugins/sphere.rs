@@ -105,7 +105,7 @@ impl<A: AccuracyTag> Hittable for Sphere<A> {
     }
 }
 
-impl<A: Bounded> Bracketed for Sphere<A> {
+impl<A: NotClassic> Bracketed for Sphere<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let from = ray.origin - self.center;
@@ -119,7 +119,7 @@ impl<A: Bounded> Bracketed for Sphere<A> {
     }
 }
 
-impl<A: Bounded> Certified for Sphere<A> {
+impl<A: NotClassic> Certified for Sphere<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         sphere::is_on_surface(at - self.center, self.radius, error)
     }

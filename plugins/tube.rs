@@ -22,7 +22,7 @@ const PLACES: u32 = 512;
 const DIRECTIONS: u32 = 256;
 
 /// The least sine of the angle between the curve and the direction that it avoids.
-const LEAST_SINE: f64 = 0.02;
+const MIN_SINE: f64 = 0.02;
 
 inventory::submit! {
     Entity::shape("tube", "a tube around a curve, without ends", &[TABLE], |args| {
@@ -50,7 +50,7 @@ inventory::submit! {
         let (least, avoided) = (0..DIRECTIONS)
             .map(|index| (sine(direction(index)), direction(index)))
             .fold((0.0, DVec3::Y), |best, one| if one.0 > best.0 { one } else { best });
-        if least < LEAST_SINE {
+        if least < MIN_SINE {
             return Err(refusal(
                 "has a curve that runs in nearly every direction",
                 "cut the curve into two tubes, the second of which begins at the `t` where the first one ends",

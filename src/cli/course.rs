@@ -17,7 +17,7 @@ use tabray_lang::registry::Registry;
 const MAX_OBJECTS: usize = 1000;
 
 /// The maximum number of objects times pixels of an image whose rays are searched for edges.
-const MOST_RAYS: usize = 1 << 24;
+const MAX_RAYS: usize = 1 << 24;
 
 /// The maximum number of objects that are named for each reason.
 const NAMED: usize = 4;
@@ -162,7 +162,7 @@ fn of_course(model: &Model) -> Vec<Difference> {
         ],
     );
     let sensor = &model.camera.value;
-    if objects.len() * sensor.pixels[0] * sensor.pixels[1] <= MOST_RAYS {
+    if objects.len() * sensor.pixels[0] * sensor.pixels[1] <= MAX_RAYS {
         let reason = "rays exactly through an edge or between two texels, which the course's program rounds differently";
         all.extend(differences(objects.iter(), &[(reason, &|object| edges::are_met(sensor, object))]));
     }

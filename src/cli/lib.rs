@@ -38,7 +38,7 @@ use nix::sys::signal::{SigSet, Signal};
 use process::failure::report;
 #[cfg(target_os = "linux")]
 use process::interrupt;
-use process::messages::Told;
+use process::messages::Verbosity;
 use process::{arguments, bounds, color, crash, help, memory, messages, program, progress};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
@@ -121,12 +121,12 @@ fn chosen() -> ExitCode {
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     color::choose(cli.color);
     let chosen = matches.subcommand();
-    let told = match (cli.quiet, chosen) {
-        (false, _) => Told::All,
-        (true, Some(_)) => Told::ErrorsAndWarnings,
-        (true, None) => Told::Errors,
+    let verbosity = match (cli.quiet, chosen) {
+        (false, _) => Verbosity::All,
+        (true, Some(_)) => Verbosity::ErrorsAndWarnings,
+        (true, None) => Verbosity::Errors,
     };
-    messages::choose(cli.message_format, told);
+    messages::choose(cli.message_format, verbosity);
     progress::choose(cli.progress);
     if let Err(failure) = cli.bounds.keep() {
         return report(&failure);
@@ -141,7 +141,7 @@ fn chosen() -> ExitCode {
         }
         None if io::stdin().is_terminal() => {
             let _ = write!(io::stderr(), "{}", line().render_long_help());
-            report(&Failure::Told)
+            report(&Failure::AlreadyReported)
         }
         None => notes::run(registry).exit_code(),
     }

@@ -150,7 +150,7 @@ impl Args {
     /// Checks, for commands that let others render, that one scene and the options make an image, or frames, and tells
     /// which; nothing is written.
     pub fn check(mut self, registry: &Registry) -> Result<bool, Failure> {
-        let [scene] = &self.scenes[..] else { return Err(Failure::Told) };
+        let [scene] = &self.scenes[..] else { return Err(Failure::AlreadyReported) };
         let scene = scene.clone();
         let path = several::target(self.output.as_deref(), &scene, self.extension())?;
         if path == Path::new("-") || input::is_standard(&scene) {

@@ -13,7 +13,7 @@ pub use tabray_world::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
 pub use tabray_world::scene::value::{COLOUR, Datum, PerChannel, Type, Value, WholePerChannel};
 
 // What a constructor returns: a camera, a material, a texture, a shader, an object, a light or a background.
-pub use tabray_world::accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
+pub use tabray_world::accuracy::{Accuracy, AccuracyTag, Classic, Draft, Exact, NotClassic, Strict};
 pub use tabray_world::any_shape::AnyShape;
 pub use tabray_world::background::Background;
 pub use tabray_world::ball::{Ball, BallSample};

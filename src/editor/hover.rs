@@ -13,7 +13,7 @@ use tabray_lang::reader::Keyword;
 use tabray_lang::syntax::Syntax;
 
 /// The maximum number of lines of a definition that are shown.
-const MOST_LINES: usize = 16;
+const MAX_LINES: usize = 16;
 
 /// The explanation of a word.
 #[derive(Clone, Debug)]
@@ -101,9 +101,9 @@ fn name(group: &Group, view: &View, at: usize) -> Option<Hover> {
     let all = other.names();
     let definition = all.definitions.iter().find(|definition| definition.name.place == found.place)?;
     let whole = other.slice(definition.whole.clone()).trim_end();
-    let mut lines: Vec<_> = whole.lines().take(MOST_LINES + 1).collect();
-    if lines.len() > MOST_LINES {
-        lines[MOST_LINES] = "...";
+    let mut lines: Vec<_> = whole.lines().take(MAX_LINES + 1).collect();
+    if lines.len() > MAX_LINES {
+        lines[MAX_LINES] = "...";
     }
     let language = if view.syntax == Syntax::Toml { "toml" } else { "tabray" };
     let file = if *path == group[0].0 { String::new() } else { format!(" of `{}`", shown(path)) };

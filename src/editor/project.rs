@@ -8,7 +8,7 @@ use std::sync::Arc;
 use tabray_core::files::plain;
 
 /// The maximum number of files of a scene that are read.
-const MOST_FILES: usize = 1000;
+const MAX_FILES: usize = 1000;
 
 /// Gives access to files, with the contents in the editor if they are open there, and otherwise as stored.
 pub trait Files {
@@ -33,7 +33,7 @@ fn with_included(files: &dyn Files, root: &Path) -> Group {
     let mut group: Group = Vec::new();
     let mut waiting = vec![root.to_owned()];
     while let Some(path) = waiting.pop() {
-        if group.len() >= MOST_FILES || group.iter().any(|(known, _)| *known == path) {
+        if group.len() >= MAX_FILES || group.iter().any(|(known, _)| *known == path) {
             continue;
         }
         let Some(view) = files.view(&path) else { continue };

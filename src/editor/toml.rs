@@ -12,7 +12,7 @@ use toml_parser::decoder::Encoding;
 use toml_parser::parser::{Event, EventKind};
 
 /// The maximum number of parts of a key. Longer keys are skipped.
-const MOST_PARTS: usize = 128;
+const MAX_PARTS: usize = 128;
 
 /// The number of last items that are searched for an item to continue.
 const NEAR: usize = 64;
@@ -145,7 +145,7 @@ impl Reader<'_> {
 
     /// Begins the item of a title, unless the title continues the last one.
     fn open(&mut self, path: &[Word], title: Range<usize>, is_new: bool) {
-        if path.len() > MOST_PARTS {
+        if path.len() > MAX_PARTS {
             return;
         }
         let (text, registry) = (self.text, self.registry);
@@ -160,7 +160,7 @@ impl Reader<'_> {
         path.extend(table.iter().chain(outer.iter().flatten()).chain(&leaf.key));
         let place = first..leaf.end.max(leaf.from.unwrap_or(0));
         match (Keyword::of(self.says(path[0])), &path[..]) {
-            _ if path.len() > MOST_PARTS => {}
+            _ if path.len() > MAX_PARTS => {}
             (Some(Keyword::Include), [_]) => {
                 self.items.push(Item::Include(Include { files: leaf.values, place }));
             }

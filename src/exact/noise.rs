@@ -35,8 +35,8 @@ const RISES: [Curve; 2] = [[0.0, 1.0, 0.0, 0.0, -10.0, 15.0, -6.0], [0.0, 0.0, 0
 /// magnitudes of the rises are (1 - f) t and f (1 - t), together at most 1/2. Further, |f'| <= 15/8, |f''| < 5.8 and
 /// |f'''| <= 60. The derivatives of t f are f + t f', 2 f' + t f'' and 3 f'' + t f''', and those of the other rise are
 /// the same with 1 - t for t.
-const MOST_WEIGHT: [f64; 4] = [1.0, 3.75, 11.6, 120.0];
-const MOST_RISE: [f64; 4] = [0.5, 2.875, 13.3, 94.8];
+const MAX_WEIGHT: [f64; 4] = [1.0, 3.75, 11.6, 120.0];
+const MAX_RISE: [f64; 4] = [0.5, 2.875, 13.3, 94.8];
 
 /// Returns the gradient at a corner: two of its coordinates are 1 or -1, and one is 0.
 pub(crate) fn gradient(corner: [f64; 3]) -> [f64; 3] {
@@ -78,7 +78,7 @@ pub(crate) fn most(orders: [u8; 3]) -> f64 {
     let most =
         |of: &[f64; 4], axis: usize| of.get(usize::from(orders[axis])).copied().unwrap_or(f64::INFINITY);
     let term = |rises: usize| -> f64 {
-        (0..3).map(|axis| most(if axis == rises { &MOST_RISE } else { &MOST_WEIGHT }, axis)).product()
+        (0..3).map(|axis| most(if axis == rises { &MAX_RISE } else { &MAX_WEIGHT }, axis)).product()
     };
     (0..3).map(term).sum::<f64>() * (1.0 + 1e-15)
 }

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use std::cmp::Ordering;
 
 /// The maximum number of bits between the smallest and the largest coordinate: those of `f64` have 2100.
-const MOST_BITS: i64 = 1 << 13;
+const MAX_BITS: i64 = 1 << 13;
 
 /// Exponents are multiples of this number, so that most points have one in common.
 const EXPONENT_STEP: i64 = 32;
@@ -107,7 +107,7 @@ impl WholeLine {
         let exponents = parts.each_ref().map(|part| part.exponent);
         let exponent = exponents.iter().map(|of| stepped(*of, EXPONENT_STEP)).fold(self.exponent, i64::min);
         let finer = self.exponent - exponent;
-        if exponents.iter().map(|of| of - exponent).fold(finer, i64::max) > MOST_BITS {
+        if exponents.iter().map(|of| of - exponent).fold(finer, i64::max) > MAX_BITS {
             return None;
         }
         let place = |axis: usize| {
@@ -189,7 +189,7 @@ fn whole(of: &[Rational; 3], step: i64) -> Option<([IBig; 3], IBig, i64)> {
         false => factor * *below,
     });
     let lowest = parts.iter().map(|(_, exponent, _)| stepped(*exponent, step)).min()?;
-    if parts.iter().any(|(_, exponent, _)| exponent - lowest > MOST_BITS) {
+    if parts.iter().any(|(_, exponent, _)| exponent - lowest > MAX_BITS) {
         return None;
     }
     let whole =

@@ -15,7 +15,6 @@ use tabray_lang::registry::Registry;
 /// The state of a camera that is about to be moved.
 #[derive(Serialize)]
 pub struct CameraState<'c> {
-    /// The camera's name.
     name: &'c str,
     /// The pose of the camera.
     pub stand: CameraPose,

@@ -20,7 +20,6 @@ pub struct Named {
     pub(super) order: String,
     /// Its entity type.
     pub(super) kind: &'static str,
-    /// Its name.
     pub(super) name: String,
 }
 
@@ -29,7 +28,6 @@ pub struct Named {
 pub struct Fields {
     #[serde(flatten)]
     pub(super) entity: Named,
-    /// Its attributes.
     pub(super) attributes: Vec<Field>,
 }
 

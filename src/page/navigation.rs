@@ -9,7 +9,7 @@ use tabray_core::world::sensor::Sensor;
 
 /// The greatest angle in degrees by which a viewer who goes up or down looks down or up: straight up and down, no
 /// side of the image would be `up`.
-const MOST_ELEVATION: f64 = 89.0;
+const MAX_ELEVATION: f64 = 89.0;
 
 /// The number of digits to which a coordinate is rounded, counted from the first one of the viewer's distance from
 /// the point: the rounding is less than a pixel of an image.
@@ -112,7 +112,7 @@ impl<'c> OrbitCamera<'c> {
         let hand = if self.target.is_some() { -1.0 } else { 1.0 };
         let [turn, rise] = movement.orbit.map(|degrees| hand * degrees);
         let elevation = libm::asin(self.forward.dot(self.up).clamp(-1.0, 1.0)).to_degrees();
-        let most = MOST_ELEVATION.max(elevation.abs());
+        let most = MAX_ELEVATION.max(elevation.abs());
         let rise = elevation - (elevation - rise).clamp(-most, most);
         let right = self.forward.cross(self.up).try_normalize().unwrap_or(DVec3::X);
         let turn = DMat3::from_axis_angle(self.up, turn.to_radians())

@@ -1,7 +1,7 @@
 //! Hits of rays, as arrays.
 
 use crate::arrays::{Rows, Vectors, View, numbers};
-use crate::work::{Course, How};
+use crate::work::{How, Progress};
 use glam::{DVec2, DVec3};
 use numpy::ndarray::{Array2, ArrayView1};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use std::collections::BTreeSet;
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
-use tabray_core::query::{Answer, Crossing, ExactRay, Query, Surroundings};
+use tabray_core::query::{Answer, Crossing, Query, QueryRay, Surroundings};
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_core::world::certify::Precision;
@@ -75,9 +75,9 @@ impl<'py> Rays<'py> {
 
 impl RayView<'_> {
     /// Returns a ray with the t of its end, or a message about its fault.
-    fn ray(&self, index: usize) -> Result<(ExactRay, f64), String> {
+    fn ray(&self, index: usize) -> Result<(QueryRay, f64), String> {
         let (origin, dir) = (self.origins.row(index), self.directions.row(index));
-        let ray = ExactRay::new(origin, dir).ok_or_else(|| match dir == DVec3::ZERO {
+        let ray = QueryRay::new(origin, dir).ok_or_else(|| match dir == DVec3::ZERO {
             true => format!("the direction of ray {index} is 0: a ray goes somewhere"),
             false => format!("ray {index} is not finite: its origin is {origin}, and its direction {dir}"),
         })?;
@@ -93,21 +93,21 @@ impl RayView<'_> {
 /// Passes the results of `packet` for all packets of rays to `sink`, in the order of the rays. `packet` takes the index
 /// of the packet's first ray, the rays, and the t at which each ray ends.
 fn in_packets<T: Send>(
-    course: &Course,
+    progress: &Progress,
     rays: &RayView,
     size: usize,
-    packet: impl Fn(usize, &[ExactRay], &[f64]) -> Vec<T> + Sync,
+    packet: impl Fn(usize, &[QueryRay], &[f64]) -> Vec<T> + Sync,
     mut sink: impl FnMut(T),
 ) -> Result<(), String> {
     let answered = |first: usize| -> Result<Vec<T>, String> {
-        if course.stops() {
+        if progress.stops() {
             return Ok(Vec::new());
         }
         let range = first..rays.count.min(first + size);
         let (of, ends): (Vec<_>, Vec<_>) =
             range.clone().map(|index| rays.ray(index)).collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
         let answers = packet(first, &of, &ends);
-        course.step(range.len());
+        progress.step(range.len());
         Ok(answers)
     };
     for first in (0..rays.count).step_by(TOGETHER * size) {
@@ -115,7 +115,7 @@ fn in_packets<T: Send>(
         for answers in parallel::map(packets, |index| answered(first + index * size)) {
             answers?.into_iter().for_each(&mut sink);
         }
-        if course.stops() {
+        if progress.stops() {
             break;
         }
     }
@@ -131,7 +131,7 @@ fn packet_size(is_tight: bool) -> usize {
 type Told = (Answer, Option<Surroundings>);
 
 /// Adds the surface to an answer, and names the object by its number.
-fn told(query: &Query, ray: &ExactRay, answer: Answer) -> Told {
+fn told(query: &Query, ray: &QueryRay, answer: Answer) -> Told {
     let surface = query.surroundings(ray, &answer);
     (Answer { object: answer.object.map(|object| query.number(object)), ..answer }, surface)
 }
@@ -239,15 +239,15 @@ pub struct Crossings {
 /// Finds the first hits of rays.
 pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: Asked, how: &How) -> PyResult<Hits> {
     let rays = rays.view();
-    let columns = how.run(py, rays.count, |_, course| {
+    let columns = how.run(py, rays.count, |_, progress| {
         let (query, mut columns) = (Query::new(model), Columns::default());
-        let packet = |_: usize, of: &[ExactRay], ends: &[f64]| -> Vec<Told> {
+        let packet = |_: usize, of: &[QueryRay], ends: &[f64]| -> Vec<Told> {
             let answers = if asked.fast { query.traced(of) } else { query.proven(of, asked.tight) };
             let ended = answers.into_iter().zip(ends).map(|(answer, end)| answer.within(*end));
             ended.zip(of).map(|(answer, ray)| told(&query, ray, answer)).collect()
         };
         let size = packet_size(asked.tight);
-        in_packets(course, &rays, size, packet, |told| columns.add(told)).map(|()| columns)
+        in_packets(progress, &rays, size, packet, |told| columns.add(told)).map(|()| columns)
     })?;
     columns.map_err(PyValueError::new_err)?.into_hits(py)
 }
@@ -261,11 +261,11 @@ pub fn crossings(
     how: &How,
 ) -> PyResult<Py<Crossings>> {
     let rays = rays.view();
-    let all = how.run(py, rays.count, |_, course| {
+    let all = how.run(py, rays.count, |_, progress| {
         let (query, mut columns) = (Query::new(model), Columns::default());
         let (mut numbers, mut enters) = (Vec::new(), Vec::new());
-        let packet = |first: usize, of: &[ExactRay], ends: &[f64]| {
-            let of_ray = |(number, (ray, end)): (usize, (&ExactRay, &f64))| {
+        let packet = |first: usize, of: &[QueryRay], ends: &[f64]| {
+            let of_ray = |(number, (ray, end)): (usize, (&QueryRay, &f64))| {
                 let crossings = query.crossings(ray, *end, is_tight).into_iter();
                 let one = |of: Crossing| (number, of.enters, told(&query, ray, of.answer));
                 crossings.map(one).collect::<Vec<_>>()
@@ -277,7 +277,7 @@ pub fn crossings(
             enters.push(is_entered.map_or(-1, i8::from));
             columns.add(told);
         };
-        in_packets(course, &rays, packet_size(is_tight), packet, add).map(|()| (numbers, enters, columns))
+        in_packets(progress, &rays, packet_size(is_tight), packet, add).map(|()| (numbers, enters, columns))
     })?;
     let (ray, enters, columns) = all.map_err(PyValueError::new_err)?;
     let (ray, enters) = (ray.into_pyarray(py).unbind(), enters.into_pyarray(py).unbind());
@@ -293,13 +293,13 @@ pub fn occluded<'py>(
     how: &How,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let rays = rays.view();
-    let may_be = how.run(py, rays.count, |_, course| {
+    let may_be = how.run(py, rays.count, |_, progress| {
         let (query, mut may_be) = (Query::new(model), Vec::new());
-        let packet = |_: usize, of: &[ExactRay], ends: &[f64]| match fast {
+        let packet = |_: usize, of: &[QueryRay], ends: &[f64]| match fast {
             true => query.traced(of).iter().zip(ends).map(|(answer, end)| answer.t < *end).collect(),
             false => query.occluded(of, ends),
         };
-        in_packets(course, &rays, PACKET_SIZE, packet, |is_hit| may_be.push(is_hit)).map(|()| may_be)
+        in_packets(progress, &rays, PACKET_SIZE, packet, |is_hit| may_be.push(is_hit)).map(|()| may_be)
     })?;
     Ok(may_be.map_err(PyValueError::new_err)?.into_pyarray(py))
 }

@@ -66,16 +66,16 @@ pub fn render(py: Python<'_>, model: &Model, wanted: &Wanted, how: &How) -> PyRe
     let size = wanted.size.unwrap_or(own.pixels);
     let [width, height] = size;
     let flaws = Mutex::new(Flaws::default());
-    let made = how.run(py, height, |renderer, course| {
+    let made = how.run(py, height, |renderer, progress| {
         // What may be left out of an image depends on its size.
         let mut plan = if size == own.pixels { Plan::for_picture(model) } else { Plan::new(model) };
         (plan.camera.pixels, plan.camera.samples) = (size, wanted.samples.unwrap_or(own.samples));
         let add = |part: Flaws| flaws.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
-        let overseer = RenderCallbacks { stops: &|| course.stops(), row: &|| course.step(1) };
+        let overseer = RenderCallbacks { stops: &|| progress.stops(), row: &|| progress.step(1) };
         let part = [&(0..width), &(0..height)];
         let light = renderer.light(&plan, part, overseer, &add, &|light| light.to_array())?;
         let is_seen = wanted.depth || wanted.objects || wanted.normals;
-        let seen = if is_seen { seen(renderer, &plan, &|| course.stops())? } else { Vec::new() };
+        let seen = if is_seen { seen(renderer, &plan, &|| progress.stops())? } else { Vec::new() };
         let display = plan.camera.display();
         let bytes = light.iter().flat_map(|light| display.bytes(DVec3::from(*light))).collect::<Vec<_>>();
         let of = |light: [f64; 3]| display.full_range(DVec3::from(light)).to_array();

@@ -159,11 +159,11 @@ impl Mesh {
             let known = at.is_finite().then(|| surface.winds_around(at)).ok_or(index)?;
             Ok(known.map_or(-1, i8::from))
         };
-        let inside: Result<Vec<i8>, usize> = How { threads, progress }.run(py, count, |_, course| {
+        let inside: Result<Vec<i8>, usize> = How { threads, progress }.run(py, count, |_, progress| {
             let parts = parallel::map(count.div_ceil(TOGETHER), |part| {
                 let range = part * TOGETHER..count.min((part + 1) * TOGETHER);
-                course.step(range.len());
-                let range = if course.stops() { 0..0 } else { range };
+                progress.step(range.len());
+                let range = if progress.stops() { 0..0 } else { range };
                 range.map(point).collect::<Result<Vec<_>, _>>()
             });
             parts.into_iter().collect::<Result<Vec<_>, _>>().map(|parts| parts.concat())

@@ -20,10 +20,10 @@ pub struct Proof {
 /// Proves which object each pixel shows, and compares it with the object that the tracer finds.
 pub fn verify(py: Python<'_>, model: &Model, how: &How) -> PyResult<Proof> {
     let [width, height] = model.camera.value.pixels;
-    let verdicts = how.run(py, height, |renderer, course| {
+    let verdicts = how.run(py, height, |renderer, progress| {
         let done = || {
-            course.step(1);
-            if course.stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            progress.step(1);
+            if progress.stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         verify::picture(renderer, &Plan::new(model), &done).ok()
     })?;

@@ -25,12 +25,12 @@ pub struct How<'py> {
 
 /// The state that the caller and the working threads share.
 #[derive(Default)]
-pub struct Course {
+pub struct Progress {
     stops: AtomicBool,
     done: AtomicUsize,
 }
 
-impl Course {
+impl Progress {
     /// Tells whether the work must stop, as its results are not wanted.
     pub fn stops(&self) -> bool {
         self.stops.load(Ordering::Relaxed)
@@ -47,12 +47,12 @@ impl How<'_> {
     pub const PLAIN: Self = Self { threads: None, progress: None };
 
     /// Does the work, of the amount `all`, and returns its result. The interpreter runs other threads meanwhile. A
-    /// signal stops the work and is raised, so `work` must often ask its [`Course`] whether to stop.
+    /// signal stops the work and is raised, so `work` must often ask its [`Progress`] whether to stop.
     pub fn run<T: Send>(
         &self,
         py: Python<'_>,
         all: usize,
-        work: impl FnOnce(&Renderer, &Course) -> T + Send,
+        work: impl FnOnce(&Renderer, &Progress) -> T + Send,
     ) -> PyResult<T> {
         if self.threads.is_some_and(|threads| !(1..=MAX_THREADS).contains(&threads)) {
             return Err(PyValueError::new_err(format!("`threads` must be from 1 to {MAX_THREADS}")));
@@ -60,12 +60,12 @@ impl How<'_> {
         let renderer = threads::renderer_with(self.threads.unwrap_or(0));
         // This call starts its own threads: a forked process has none of its parent's.
         let renderer = renderer.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        let (course, (send, receive)) = (Course::default(), mpsc::channel());
+        let (shared, (send, receive)) = (Progress::default(), mpsc::channel());
         let progress = self.progress.as_ref().map(|progress| progress.clone().unbind());
-        let (renderer, course) = (&renderer, &course);
+        let (renderer, shared) = (&renderer, &shared);
         let watch = move || {
             thread::scope(|scope| {
-                scope.spawn(move || send.send(renderer.run(|| work(renderer, course))));
+                scope.spawn(move || send.send(renderer.run(|| work(renderer, shared))));
                 let mut raised = Ok(());
                 loop {
                     match receive.recv_timeout(POLL) {
@@ -77,10 +77,10 @@ impl How<'_> {
                     if raised.is_ok() {
                         raised = Python::attach(|py| {
                             py.check_signals()?;
-                            let done = course.done.load(Ordering::Relaxed);
+                            let done = shared.done.load(Ordering::Relaxed);
                             progress.as_ref().map_or(Ok(()), |tell| tell.call1(py, (done, all)).map(drop))
                         });
-                        course.stops.store(raised.is_err(), Ordering::Relaxed);
+                        shared.stops.store(raised.is_err(), Ordering::Relaxed);
                     }
                 }
             })

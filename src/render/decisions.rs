@@ -308,7 +308,7 @@ fn small(features: &Features) -> String {
 
 /// Describes the objects; consecutive objects of the same kind and method share a line.
 fn objects(plan: &Plan) -> Vec<Decision> {
-    let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
+    let mut groups: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
     for (_, object) in kept(plan) {
         let place = match (&plan.tree, object.shape.culling_bounds()) {
             (Some(_), Some(_)) => "in the BVH",
@@ -316,16 +316,16 @@ fn objects(plan: &Plan) -> Vec<Decision> {
             (_, None) => "without bounds",
         };
         let (kind, text) = (object.args.entity().name, format!("{place}: {}", object.shape.method()));
-        match alike.last_mut() {
+        match groups.last_mut() {
             Some((last, same, names)) if *last == kind && *same == text => names.push(object.args.name()),
-            _ => alike.push((kind, text, vec![object.args.name()])),
+            _ => groups.push((kind, text, vec![object.args.name()])),
         }
     }
     let line = |(subject, text, names): (_, String, Vec<&str>)| Decision {
         subject,
         text: format!("{} {text}", some(names)),
     };
-    alike.into_iter().map(line).collect()
+    groups.into_iter().map(line).collect()
 }
 
 /// Lists the first [`NAMED`] names, and how many more there are.

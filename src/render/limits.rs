@@ -13,7 +13,7 @@ pub const MAX_RAYS: usize = 20_000;
 pub const MAX_TREE: u32 = 4096;
 
 /// The largest number of parts into which a pixel's samples divide both.
-pub const LEAST_PART: u32 = 8;
+pub const MIN_PART: u32 = 8;
 
 /// The depth below which reflections are traced even where the rays transmitted before them have used up the ray
 /// budget: those of primary rays, and of the rays that continue these.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use std::marker::PhantomData;
 use tabray_exact::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
 use tabray_exact::scalar::Scalar;
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, Ray, RayBall, RayError, RayRange};
 
@@ -84,7 +84,7 @@ impl<A> Ellipsoid<A> {
     }
 }
 
-impl<A: Bounded> Ellipsoid<A> {
+impl<A: NotClassic> Ellipsoid<A> {
     /// Returns the ellipsoid, with its scale normalized for the solver.
     pub fn exact(center: DVec3, radius: f64, scale: DVec3) -> Self {
         // Moving a power of two from the scale to the radius only changes the magnitude of the squares, which then do

@@ -13,7 +13,7 @@ const OPERATIONS: u64 = 40_000_000;
 
 /// The maximum number of such operations to find that a formula is regular, which is asked of objects that must be
 /// closed: a few seconds at most. They suffice for a union of hundreds of balls.
-const MOST_OPERATIONS: u64 = 10 * OPERATIONS;
+const MAX_OPERATIONS: u64 = 10 * OPERATIONS;
 
 /// The number of halvings of the box after which a part counts as a point: 18 along each axis.
 const HALVINGS: u32 = 54;
@@ -75,7 +75,7 @@ pub enum Regularity {
 
 /// Tells whether a formula and its slope are bounded on the formula's surface in a box.
 pub fn regularity(field: &Field, corners: [DVec3; 2]) -> Regularity {
-    regularity_within(field, corners, MOST_OPERATIONS)
+    regularity_within(field, corners, MAX_OPERATIONS)
 }
 
 fn regularity_within(field: &Field, corners: [DVec3; 2], mut operations: u64) -> Regularity {
@@ -212,8 +212,8 @@ mod tests {
             let field = Field::new(Arc::new(formula)).expect("its variables are x, y and z");
             regularity_within(&field, [DVec3::splat(-2.0), DVec3::splat(2.0)], operations)
         };
-        assert_eq!(check("x^2 + y^2 + z^2 - 1", MOST_OPERATIONS), Regularity::Bounded);
-        assert_eq!(check("y - floor(x) - 0.5*z", MOST_OPERATIONS), Regularity::MayJump);
+        assert_eq!(check("x^2 + y^2 + z^2 - 1", MAX_OPERATIONS), Regularity::Bounded);
+        assert_eq!(check("y - floor(x) - 0.5*z", MAX_OPERATIONS), Regularity::MayJump);
         assert_eq!(check("y - floor(x) - 0.5*z", 10), Regularity::TooCostly);
     }
 

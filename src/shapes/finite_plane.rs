@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, per_axis};
-use tabray_world::accuracy::{AccuracyTag, Bounded};
+use tabray_world::accuracy::{AccuracyTag, NotClassic};
 use tabray_world::certify::Equation;
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
@@ -43,7 +43,7 @@ impl<A: AccuracyTag> Hittable for FinitePlane<A> {
     }
 }
 
-impl<A: Bounded> Bracketed for FinitePlane<A> {
+impl<A: NotClassic> Bracketed for FinitePlane<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         FinitePlane::t_bounds(self, ray, range)
@@ -62,7 +62,7 @@ impl<A: Bounded> Bracketed for FinitePlane<A> {
     }
 }
 
-impl<A: Bounded> Certified for FinitePlane<A> {
+impl<A: NotClassic> Certified for FinitePlane<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         // A ray that starts on the plane beside the rectangle does not hit the rectangle either.
         self.plane.is_on_surface(at, error)

@@ -20,7 +20,7 @@ use tabray_exact::formula::field::Field;
 use tabray_exact::formula::nodes::Nodes;
 use tabray_exact::gradient::Gradient;
 use tabray_exact::interval::Interval;
-use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
+use tabray_exact::polynomial::{Coefficient, MAX_COEFFICIENTS, Polynomial};
 use tabray_exact::roots::Method;
 use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot};
@@ -41,14 +41,14 @@ use tabray_world::packets::shape::by_distance;
 const RAYS_PER_SEARCH: u32 = 32;
 
 /// The maximum number of roots in cut-away parts of the surface along a ray, for other methods than the shape's own.
-const MOST_CUT: usize = 64;
+const MAX_CUT: usize = 64;
 
 /// See [`Made::implicit`](crate::Made::implicit).
 pub(super) fn body(formula: impl Implicit + 'static, frame: Frame) -> Body {
     let [low, high] = formula.bounds();
     let given = Aabb { low, high };
     let Aabb { low, high } = if formula.is_box_exact() { given } else { given.with_slack(0.0) };
-    let diagonal = Polynomial::<f64, MOST>::along(Interval { low: -1.0, high: 1.0 });
+    let diagonal = Polynomial::<f64, MAX_COEFFICIENTS>::along(Interval { low: -1.0, high: 1.0 });
     let degree = formula.along([diagonal; 3]).degree();
     let ends = [low.to_array(), high.to_array()];
     let nodes = formula.field().zip(degree).and_then(|(field, degree)| Nodes::new(field, degree, ends));
@@ -148,7 +148,7 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {
         let line = FormulaOnRay::new(self, ray);
         let (Stretch { outer, .. }, mut left) = (line.stretch(), *range);
-        for _ in 0..MOST_CUT {
+        for _ in 0..MAX_CUT {
             let root = method.first_root(&line, outer.clone(), line.closest, &left, shortest(&outer));
             match root {
                 Some(root) if self.has_gaps() && !line.kept(root).is_kept => {

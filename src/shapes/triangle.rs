@@ -12,7 +12,7 @@ use tabray_exact::double_double::vectors::{
 };
 use tabray_exact::double_double::{DoubleDouble, two_sum};
 use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
-use tabray_world::accuracy::{Bounded, Classic};
+use tabray_world::accuracy::{Classic, NotClassic};
 use tabray_world::geometry::aabb::larger;
 use tabray_world::geometry::ray::{Ray, RayError};
 use tabray_world::geometry::ray_packet::RayPacket;
@@ -38,7 +38,7 @@ impl Triangle<Classic> {
     }
 }
 
-impl<A: Bounded> Triangle<A> {
+impl<A: NotClassic> Triangle<A> {
     /// Returns the triangle with these corners, or `None` if they are collinear.
     pub fn new(corners: [DVec3; 3]) -> Option<Self> {
         let area_normal = exact_normal(corners);
@@ -158,7 +158,11 @@ fn scale_to_one(x: f64, y: f64, z: f64) -> (f64, bool) {
 ///
 /// The distances equal those of `plane_for_distances`, to the bit.
 #[inline(always)]
-pub fn crossings<A: Bounded>(corners: &[Vectors<LANES>; 3], rays: RayPacket, distances: &mut [f64; LANES]) {
+pub fn crossings<A: NotClassic>(
+    corners: &[Vectors<LANES>; 3],
+    rays: RayPacket,
+    distances: &mut [f64; LANES],
+) {
     let corners_of = |lane: usize| [corners[0].get(lane), corners[1].get(lane), corners[2].get(lane)];
     let (mut high, mut low, mut is_known) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO, [0; LANES]);
     for lane in 0..LANES {

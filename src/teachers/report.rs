@@ -118,7 +118,6 @@ struct Data<'d> {
     items: Vec<Shown<'d>>,
     /// Whether the page can accept and reject.
     served: bool,
-    /// The title of the page.
     title: &'d str,
 }
 
@@ -130,7 +129,6 @@ struct Shown<'d> {
     decision: Option<&'d Decision>,
     /// Explanations of the pixel that differs most: titles and texts.
     explanations: Vec<(&'d str, Cow<'d, str>)>,
-    /// The name.
     name: &'d str,
     /// A summary of the change in a few words.
     summary: String,

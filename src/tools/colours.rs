@@ -139,8 +139,8 @@ impl<'p, 'm> Prover<'p, 'm> {
         };
         let (display, leaves_out) = (self.plan.camera.display(), self.plan.depth.is_some());
         // Rays may be left out that add less than `FAINT` to a pixel, or under the free rules change it by less than
-        // `MOST_OFF`.
-        let (missing, off) = if leaves_out { (FAINT, MOST_OFF) } else { (0.0, 0.0) };
+        // `MAX_ERROR`.
+        let (missing, off) = if leaves_out { (FAINT, MAX_ERROR) } else { (0.0, 0.0) };
         let possible = match display.truncates() {
             Some(_) => colour.map(|channel| truncated(channel, missing)),
             None => rounded(&display, &colour, off),
@@ -209,7 +209,7 @@ type Possible = [u8; 4];
 
 /// The maximum error in levels of an image of the free rules where rays are left out: the image shows the middle of
 /// bounds that are up to a level apart.
-const MOST_OFF: f64 = 0.5;
+const MAX_ERROR: f64 = 0.5;
 
 /// Returns the bytes of a channel under the notes' rules. `missing` is the most that the image may lack.
 fn truncated<F: Float>(channel: Interval<F>, missing: f64) -> Possible {

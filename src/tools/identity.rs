@@ -23,7 +23,6 @@ use tabray_lang::syntax::Syntax;
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Identity {
-    /// The name of the accuracy.
     accuracy: String,
     /// The part of the image that is rendered: column and row, from 0 at the lower left, and width and height, all in
     /// pixels; null where the whole image is rendered.

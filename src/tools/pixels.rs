@@ -21,7 +21,7 @@ use tabray_core::render::tiles::{Band, Strip, TILE};
 use tabray_core::text;
 
 /// The maximum number of parts of an image.
-pub const MOST_PARTS: usize = 100_000;
+pub const MAX_PARTS: usize = 100_000;
 
 /// The first line of each file.
 const FIRST: &[u8] = b"tabray pixels 1\n";
@@ -167,7 +167,7 @@ impl Label {
         let are_texts = self.made.iter().all(|(keyword, text)| is_keyword(keyword) && !text.contains('\0'));
         is_small
             && are_texts
-            && of <= MOST_PARTS
+            && of <= MAX_PARTS
             && (1..=of).contains(&number)
             && self.tiles[0] < self.tiles[1]
             && self.tiles[1] <= self.grid().count()

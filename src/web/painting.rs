@@ -98,7 +98,7 @@ impl Painting {
     }
 
     /// Returns why a complete picture is black, burnt or empty, if it is.
-    pub fn told(&self, model: &Model) -> Value {
+    pub fn remark(&self, model: &Model) -> Value {
         let [width, height] = self.size;
         let remark = diagnosis::remark(&Scene::plan(model), [&(0..width), &(0..height)], &self.levels);
         let remark = remark.filter(|_| self.whole().is_ok() && !reader::is_black(model));

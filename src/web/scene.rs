@@ -36,7 +36,7 @@ pub struct Scene {
 
 /// The description of a scene for the page.
 #[derive(Serialize)]
-pub struct Told {
+pub struct Description {
     display: Display,
     size: [usize; 2],
     warnings: String,
@@ -93,10 +93,10 @@ impl Scene {
     }
 
     /// Returns the description of the scene for the page.
-    pub fn told(&self) -> Told {
+    pub fn description(&self) -> Description {
         let camera = &self.model.camera.value;
         let (warnings, lacking) = (self.warnings.clone(), self.lacking.clone());
-        Told { display: Display::of(camera), size: camera.pixels, warnings, lacking }
+        Description { display: Display::of(camera), size: camera.pixels, warnings, lacking }
     }
 
     /// Returns the scene for queries of a page.

@@ -120,9 +120,9 @@ impl Session {
             Ok(scene) => {
                 self.painting = Painting::new(&scene.model);
                 self.proving = Proving::default();
-                let told = scene.told();
+                let description = scene.description();
                 self.scene = Some(scene);
-                Answer::json(&told)
+                Answer::json(&description)
             }
             Err(unread) => Answer::new(422, text::json(&unread)),
         }
@@ -147,7 +147,7 @@ impl Session {
                 |_| Answer::missing(),
                 |count| Answer::new(200, self.painting.next(model, count)),
             ),
-            ("painted", []) => Answer::json(&self.painting.told(model)),
+            ("painted", []) => Answer::json(&self.painting.remark(model)),
             ("prove", [count]) => count.parse().map_or_else(
                 |_| Answer::missing(),
                 |count| Answer::new(200, self.proving.next(model, count)),

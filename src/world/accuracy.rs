@@ -91,8 +91,8 @@ impl AccuracyTag for Strict {
 }
 
 /// A marker of an accuracy that finds first hits with error bounds: [`Draft`], [`Exact`] or [`Strict`].
-pub trait Bounded: AccuracyTag {}
+pub trait NotClassic: AccuracyTag {}
 
-impl Bounded for Draft {}
-impl Bounded for Exact {}
-impl Bounded for Strict {}
+impl NotClassic for Draft {}
+impl NotClassic for Exact {}
+impl NotClassic for Strict {}

@@ -4,7 +4,7 @@ use crate::certify::{Enclosure, HitEnclosure, HitProofs, Precision, Premise, Pro
 use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{Nearest, RayPacket};
+use crate::geometry::ray_packet::{HitRecordMut, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::hittable::{Facts, Hittable, Shape, Sides, SurfaceHit};
 use crate::packets::shape::{HitQueries, PacketIntersect, PacketShape};
@@ -169,7 +169,7 @@ impl AnyShape {
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
     /// any two hits is in doubt. `id` is the object's index in the scene plus 1.
     #[inline]
-    pub fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+    pub fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: HitRecordMut) -> bool {
         self.shape.closest_hits(cpu, rays, id, nearest)
     }
 }

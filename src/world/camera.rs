@@ -120,9 +120,9 @@ pub enum Projected {
 /// A camera for packets. Every [`Camera`] is one.
 pub trait PacketCamera: Camera {
     /// Writes the directions of the rays through many places of the image. All these rays start at one point.
-    fn look(&self, cpu: Cpu, places: &Places, dirs: ViewMut);
+    fn fill_directions(&self, cpu: Cpu, places: &Places, dirs: ViewMut);
     /// Writes the origins and the directions of the rays that are seen at many places.
-    fn look_from(&self, cpu: Cpu, places: &Places, origins: ViewMut, dirs: ViewMut);
+    fn fill_rays(&self, cpu: Cpu, places: &Places, origins: ViewMut, dirs: ViewMut);
     /// Calls [`Camera::line`].
     fn footprint(&self, at: ImagePoint<Affine>) -> Option<Line<Affine>>;
     /// Calls [`Camera::line`] for rounded numbers.
@@ -142,12 +142,12 @@ pub struct Places<'p> {
 }
 
 impl<T: Camera> PacketCamera for T {
-    fn look(&self, cpu: Cpu, places: &Places, dirs: ViewMut) {
-        look(cpu, self, places.pixels, places.x, places.y, dirs);
+    fn fill_directions(&self, cpu: Cpu, places: &Places, dirs: ViewMut) {
+        fill_directions(cpu, self, places.pixels, places.x, places.y, dirs);
     }
 
-    fn look_from(&self, cpu: Cpu, places: &Places, origins: ViewMut, dirs: ViewMut) {
-        look_from(cpu, self, places, origins, dirs);
+    fn fill_rays(&self, cpu: Cpu, places: &Places, origins: ViewMut, dirs: ViewMut) {
+        fill_rays(cpu, self, places, origins, dirs);
     }
 
     fn footprint(&self, at: ImagePoint<Affine>) -> Option<Line<Affine>> {
@@ -161,7 +161,7 @@ impl<T: Camera> PacketCamera for T {
 
 kernels! {
     /// Writes the directions of the rays through many places, without a lens.
-    fn look[T: Camera](camera: &T, pixels: [usize; 2], x: &[f64], y: &[f64]) => dirs {
+    fn fill_directions[T: Camera](camera: &T, pixels: [usize; 2], x: &[f64], y: &[f64]) => dirs {
         let count = x.len();
         let (y, mut dirs) = (&y[..count], dirs.first(count));
         let mut zeros = 0;
@@ -179,7 +179,7 @@ kernels! {
     }
 
     /// Writes the rays through many places.
-    fn look_from[T: Camera](camera: &T, places: &Places) => origins, dirs {
+    fn fill_rays[T: Camera](camera: &T, places: &Places) => origins, dirs {
         let Places { pixels, x, y, lens } = *places;
         let count = x.len();
         let (y, mut origins, mut dirs) = (&y[..count], origins.first(count), dirs.first(count));

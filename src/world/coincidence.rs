@@ -23,7 +23,7 @@ pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The least cosine by which an error is divided: the square root of `f64::EPSILON`. At a grazing hit, the distance to
 /// a curved surface is off by about the square root of the rounding error, however small the cosine is.
-pub const LEAST_COSINE: f64 = 1.0 / (1 << 26) as f64;
+pub const MIN_COSINE: f64 = 1.0 / (1 << 26) as f64;
 
 /// The relative difference below which two distances may be equal up to rounding: [`ROUNDING`] divided by a cosine of
 /// 2^-18. `a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does` in `tests/shapes` tests it.
@@ -48,7 +48,7 @@ pub const SAME: f64 = 1e-28;
 pub fn error(ray: &Ray, distance: f64, normal: DVec3, max_coordinate: f64) -> f64 {
     let origin = ray.origin.abs();
     let size = larger(larger(origin.x, origin.y), origin.z) + distance + max_coordinate;
-    ROUNDING * size / larger(ray.dir.dot(normal).abs(), LEAST_COSINE)
+    ROUNDING * size / larger(ray.dir.dot(normal).abs(), MIN_COSINE)
 }
 
 /// Returns the bound that [`error`] gives for a hit point, or a larger one, in world units, from the cosine of the
@@ -59,7 +59,7 @@ pub fn error(ray: &Ray, distance: f64, normal: DVec3, max_coordinate: f64) -> f6
 pub fn error_after(travelled: f64, max_coordinate: f64, cosine: f64) -> f64 {
     // A division in single precision takes a third of the time, and its relative error of 2^-24 or so does not matter
     // to a bound that is rounded up from 11 to 16 ulps.
-    ROUNDING * (travelled + max_coordinate) * f64::from(1.0 / larger(cosine.abs(), LEAST_COSINE) as f32)
+    ROUNDING * (travelled + max_coordinate) * f64::from(1.0 / larger(cosine.abs(), MIN_COSINE) as f32)
 }
 
 kernels! {
@@ -71,7 +71,7 @@ kernels! {
         for lane in 0..cosines.len() {
             // None of these numbers is negative, so their bits compare as the numbers do.
             max_travelled = max_travelled.max(travelled[lane].to_bits() as i64);
-            min_cosine = min_cosine.min(larger(cosines[lane].abs(), LEAST_COSINE).to_bits() as i64);
+            min_cosine = min_cosine.min(larger(cosines[lane].abs(), MIN_COSINE).to_bits() as i64);
         }
         error_after(f64::from_bits(max_travelled as u64), max_coordinate, f64::from_bits(min_cosine as u64))
     }

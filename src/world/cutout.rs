@@ -15,7 +15,7 @@ use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 
 /// The maximum number of cut parts that a ray passes on its way. Beyond them, it hits nothing.
-const MOST_PASSED: usize = 1 << 16;
+const MAX_PASSED: usize = 1 << 16;
 
 /// A shape without the parts that a shader cuts out. Rays pass through the holes.
 pub(crate) struct Cutout {
@@ -47,7 +47,7 @@ impl Cutout {
 impl Hittable for Cutout {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let (mut from, mut rest, mut passed) = (*ray, *range, 0.0);
-        for _ in 0..MOST_PASSED {
+        for _ in 0..MAX_PASSED {
             let distance = self.shape.distance(&from, &rest);
             if distance == MISS {
                 break;

@@ -53,7 +53,7 @@ pub mod texels;
 pub mod text;
 pub mod texture;
 
-pub use accuracy::{Accuracy, AccuracyTag, Bounded, Classic, Draft, Exact, Strict};
+pub use accuracy::{Accuracy, AccuracyTag, Classic, Draft, Exact, NotClassic, Strict};
 pub use any_shape::AnyShape;
 pub use background::{AnyBackground, Background};
 pub use ball::{Ball, BallSample};

@@ -23,7 +23,7 @@ pub struct Window {
 }
 
 /// The least cosine of the angle at which a patch is seen. At smaller cosines, patches are as long as at this one.
-pub const LEAST_COSINE: f64 = 1e-6;
+pub const MIN_COSINE: f64 = 1e-6;
 
 /// An upper limit on the rounding errors of a mean over a patch, as a fraction of the averaged values.
 pub const MEAN_ROUNDING: f64 = 1e-7;
@@ -48,7 +48,7 @@ impl Patch {
         let along =
             (dir - cosine * normal).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
         let across = normal.cross(along);
-        Self { sides: [width / cosine.abs().max(LEAST_COSINE) * along, width * across], pixel, uv: None }
+        Self { sides: [width / cosine.abs().max(MIN_COSINE) * along, width * across], pixel, uv: None }
     }
 
     /// Finds u and v at the corners of the patch around a point of a shape, given u and v in the middle.
@@ -98,7 +98,7 @@ impl<F: Float> PatchBounds<F> {
             return None;
         }
         let along = along.map(|axis| axis / length);
-        let long = width / cosine.abs().max(Interval::constant(LEAST_COSINE));
+        let long = width / cosine.abs().max(Interval::constant(MIN_COSINE));
         let across = cross(normal, along).map(|axis| width * axis);
         Some(Self { middle, sides: [along.map(|axis| long * axis), across], uv: None })
     }

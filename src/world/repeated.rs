@@ -2,7 +2,7 @@
 
 use crate::material::Rgb;
 use crate::patch::MEAN_ROUNDING;
-use crate::texture::{MOST_TEXELS, Texture};
+use crate::texture::{MAX_TEXELS, Texture};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, constants, per_axis};
@@ -40,7 +40,7 @@ impl Texture {
             return Some(blend(row(y), row(y + 1.0), part(place[1], y)));
         }
         // Blends lie between the texels around.
-        let are_few = |[low, high]: [f64; 2]| high - low < MOST_TEXELS as f64;
+        let are_few = |[low, high]: [f64; 2]| high - low < MAX_TEXELS as f64;
         let all = |[low, high]: [f64; 2]| (0..=(high - low) as u32 + 1).map(move |at| low + f64::from(at));
         let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
             per_axis(|channel| one[channel].hull(other[channel]))

@@ -8,7 +8,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 
 /// The largest number of columns, and of rows, of a [`SkyMap`].
-const MOST_CELLS: [u32; 2] = [1024, 512];
+const MAX_CELLS: [u32; 2] = [1024, 512];
 
 /// The largest number of cells along each side of a texel. If colours are interpolated between the middles of texels,
 /// the brightest part of a lone bright texel is 16 times as bright as the corner to which its light reaches. With one
@@ -36,7 +36,7 @@ impl SkyMap {
         if width == 0 || height == 0 {
             return None;
         }
-        let most = MOST_CELLS.map(|most| most as usize);
+        let most = MAX_CELLS.map(|most| most as usize);
         let size = [width as usize, height as usize];
         let mut fine = FINEST;
         while fine > 1 && (fine * size[0] > most[0] || fine * size[1] > most[1]) {

@@ -18,7 +18,7 @@ use tabray_exact::scalar::{Scalar, constants, per_axis};
 pub const CUTOFF: f64 = 0.5;
 
 /// The maximum number of columns or rows whose texels an enclosure examines one by one.
-pub(super) const MOST_TEXELS: usize = 8;
+pub(super) const MAX_TEXELS: usize = 8;
 
 /// An image in a file. It is read once, when it is first needed.
 #[derive(Debug, Default)]
@@ -145,7 +145,7 @@ impl Texture {
         let Some(Ok(picture)) = self.picture.get() else { return Rgb::ONE };
         let size = DVec2::from(texels.size().map(f64::from));
         let (low, high) = (low.clamp(DVec2::ZERO, size), high.clamp(DVec2::ZERO, size));
-        if (high.floor() - low.floor()).max_element() < MOST_TEXELS as f64 {
+        if (high.floor() - low.floor()).max_element() < MAX_TEXELS as f64 {
             return texels.mean_of_few(low, high);
         }
         picture.sums.get_or_init(|| Sums::of(texels)).mean(low, high)
@@ -182,7 +182,7 @@ impl Texture {
         rows: impl Iterator<Item = u32> + Clone,
     ) -> [Interval<F>; 3] {
         let any = Interval::constant(0.0).hull(Interval::constant(self.brightest()));
-        if columns.clone().nth(MOST_TEXELS).is_some() || rows.clone().nth(MOST_TEXELS).is_some() {
+        if columns.clone().nth(MAX_TEXELS).is_some() || rows.clone().nth(MAX_TEXELS).is_some() {
             return [any; 3];
         }
         let of_row = |row: u32| columns.clone().map(move |column| constants(self.texel(column, row)));

@@ -5,7 +5,7 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use std::fs;
 use std::path::Path;
-use tabray::geometry::{MISS, Nearest, Ray, RayPacket, RayRange};
+use tabray::geometry::{HitRecordMut, MISS, Ray, RayPacket, RayRange};
 use tabray::scene::{self, Model, Registry};
 use tabray::simd::{Cpu, Vectors};
 
@@ -85,7 +85,7 @@ fn meet(bencher: Bencher, name: &str) {
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
             let (mut hit_ids, mut doubt) = ([0; WIDE], [0; WIDE]);
             let nearest =
-                Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
+                HitRecordMut { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
             shape.closest_hits(cpu, RayPacket::new(origin.view(WIDE), dir.view(WIDE), 0.0), 1, nearest);
             black_box((&near, &far, &hit_ids));
         }

@@ -36,10 +36,10 @@ pub struct Roots<T> {
 const THOROUGH: [usize; 2] = [4_000, 20_000];
 
 /// The number of pieces that may stay open.
-const MOST_OPEN: usize = 24;
+const MAX_OPEN: usize = 24;
 
 /// The number of jumps and poles in a piece, on all of whose sides the function is evaluated.
-const MOST_SIDES: u32 = 6;
+const MAX_SIDES: u32 = 6;
 
 /// `is_exact` tells that a change of sign at a ledge is located as closely as is useful.
 fn roots<T: Number>(
@@ -99,7 +99,7 @@ fn roots<T: Number>(
             continue;
         }
         if is_narrow {
-            let is_full = found.open.len() == MOST_OPEN;
+            let is_full = found.open.len() == MAX_OPEN;
             match found.open.last_mut() {
                 Some([_, end]) if !low.sub(end).sign().is_some_and(Ordering::is_gt) => *end = high,
                 _ if is_full => {
@@ -125,7 +125,7 @@ fn is_nowhere_zero<T: Number>(along: &impl Along, known: &Known<T>, piece: &T) -
     loop {
         let mut sides = Sides { count: 0, chosen: Some(chosen) };
         let side = along.at(&Jet::variable(piece.clone()), known, &mut sides);
-        if sides.count > MOST_SIDES || side.is_some_and(|side| !is_not_zero(&side.jet.value)) {
+        if sides.count > MAX_SIDES || side.is_some_and(|side| !is_not_zero(&side.jet.value)) {
             return false;
         }
         // On one side of a jump, there may be further ones: next is the other side of the last one that has one.

@@ -12,7 +12,7 @@ use std::cmp::Ordering::{self, Greater};
 const BEHIND: i64 = -240;
 
 /// The largest number of crossings of one shape.
-const MOST: usize = 1000;
+const MAX_PLACES: usize = 1000;
 
 /// Returns the places ahead of a ray's origin where it crosses the surface of a closed shape; `None` if it touches
 /// something exactly.
@@ -42,7 +42,7 @@ pub fn crossings(shape: &Shape, ray: &Ray) -> Option<Vec<Wide>> {
 
 fn of_one(shape: &Shape, ray: &Ray) -> Option<Vec<Wide>> {
     let (mut places, mut start, mut gone): (Vec<Wide>, _, _) = (Vec::new(), ray.clone(), Wide::int(0));
-    while places.len() < MOST {
+    while places.len() < MAX_PLACES {
         let place = match hit(shape, &start) {
             Hit::Miss => return Some(places),
             Hit::Touch => return None,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use std::slice;
 use tabray::exact::Scalar;
 use tabray::geometry::{Aabb, Frame, Ray, RayRange};
-use tabray::query::{ExactRay, Query, Verdict};
+use tabray::query::{Query, QueryRay, Verdict};
 use tabray::shapes::{Implicit, Made};
 use tabray::world::certify::{Enclosure, Precision};
 use tabray::world::{AnyShape, Body, Facts, Hittable, Sides};
@@ -36,7 +36,7 @@ fn rays_straight_on_meet_the_extremes_of_tori_their_copies_and_unions() {
                 let model = model(&text);
                 let query = Query::new(&model);
                 for axis in [DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z] {
-                    let ray = ExactRay::new(8.0 * axis, -axis).expect("a ray");
+                    let ray = QueryRay::new(8.0 * axis, -axis).expect("a ray");
                     let first = 8.0 - scale * (radius + tube);
                     let answers =
                         [query.traced(slice::from_ref(&ray)), query.proven(slice::from_ref(&ray), false)];
@@ -119,7 +119,7 @@ fn an_exact_box_cuts_where_it_is_written() {
     for is_exact in [true, false] {
         let body = Body::implicit(Floor(is_exact), Frame::at(DVec3::ZERO));
         let is_hit = |x: f64| {
-            let ray = ExactRay::new(DVec3::new(x, 4.0, 0.0), DVec3::NEG_Y).expect("a ray");
+            let ray = QueryRay::new(DVec3::new(x, 4.0, 0.0), DVec3::NEG_Y).expect("a ray");
             let sight = ray.sight();
             match body.shape.certify(sight, Precision::Octuple) {
                 Enclosure::Hits(_) => Some(true),

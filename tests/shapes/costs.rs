@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::geometry::ray_packet::SurfaceInteraction;
-use tabray::geometry::{Aabb, Bracket, Facet, Nearest, Ray, RayBall, RayPacket, RayRange, Side, Sight};
+use tabray::geometry::{Aabb, Bracket, Facet, HitRecordMut, Ray, RayBall, RayPacket, RayRange, Side, Sight};
 use tabray::glam::{DVec2, DVec3};
 use tabray::prelude::{Entity, MISS, Pparm, Table};
 use tabray::scene::model::Object;
@@ -20,7 +20,7 @@ use tabray::world::packets::shape::{HitQueries, PacketIntersect, PacketShape};
 use tabray::world::{Accuracy, AnyShape, Body, Facts, Hittable, NamedBody, Shape};
 
 /// The most that a shape may cost as a part of something else, as a multiple of what it costs alone.
-const MOST: f64 = 3.0;
+const MAX_RATIO: f64 = 3.0;
 
 /// What a ray by itself and a proof in 53 and in 237 bits count for, where a ray in a packet counts for 1. These are orders
 /// of magnitude: what the test is to find is a proof for every ray.
@@ -102,7 +102,7 @@ impl PacketIntersect for Counted {
         self.packets().brackets(cpu, rays, ends, brackets);
     }
 
-    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: HitRecordMut) -> bool {
         count(rays.len() as u64);
         self.packets().closest_hits(cpu, rays, id, nearest)
     }
@@ -325,7 +325,7 @@ fn no_shape_costs_far_more_as_a_part_of_something_else() {
         }
         for (place, ratio) in ratios(&folder, &text, &|object| object.args.entity().name == entity.name) {
             println!("{:16} {place:12} {ratio:8.2}", entity.name);
-            if ratio > MOST {
+            if ratio > MAX_RATIO {
                 faults.push(format!("{} {place}: {ratio:.1} times", entity.name));
             }
         }
@@ -340,7 +340,7 @@ const BALL: &str = "camera eye { pixeldim 36 27 worlddim 3 2.25 viewpoint 0 0 4 
 fn a_shape_of_which_only_the_distance_is_known_costs_no_more_in_another_place() {
     let text = format!("{BALL}bare ball {{ material matt }}\n");
     let ratios = ratios(Path::new(""), &text, &|_| true);
-    assert!(ratios.iter().all(|(_, ratio)| *ratio < MOST), "{ratios:?}");
+    assert!(ratios.iter().all(|(_, ratio)| *ratio < MAX_RATIO), "{ratios:?}");
 }
 
 /// The measure sees what it is there to see.
@@ -348,5 +348,5 @@ fn a_shape_of_which_only_the_distance_is_known_costs_no_more_in_another_place() 
 fn brackets_that_say_nothing_of_copies_cost_more() {
     let text = format!("{BALL}forgetful ball {{ material matt }}\n");
     let ratios = ratios(Path::new(""), &text, &|_| true);
-    assert!(ratios[0].1 > MOST, "{ratios:?}");
+    assert!(ratios[0].1 > MAX_RATIO, "{ratios:?}");
 }

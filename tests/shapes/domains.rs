@@ -4,7 +4,7 @@ use crate::common::model;
 use crate::oracle::rays::Random;
 use glam::DVec3;
 use tabray::geometry::{MISS, Ray, RayRange};
-use tabray::query::{ExactRay, Query, Verdict};
+use tabray::query::{Query, QueryRay, Verdict};
 use tabray::render::Plan;
 use tabray::scene::Model;
 use tabray::tools::verify;
@@ -207,7 +207,7 @@ fn a_root_where_the_formula_is_not_defined_is_no_hit() {
         ("acos(y/z) - 2", [0.0, -0.5, 3.0], [0.0, 0.0, -1.0], Hit),
     ] {
         let model = surface(formula);
-        let ray = ExactRay::new(origin.into(), dir.into()).expect("a ray");
+        let ray = QueryRay::new(origin.into(), dir.into()).expect("a ray");
         for is_tight in [false, true] {
             let [answer] = Query::new(&model).proven(std::slice::from_ref(&ray), is_tight)[..] else {
                 panic!("one answer")
@@ -225,7 +225,7 @@ fn an_arc_cosine_of_a_quotient_is_seen_on_both_sides_of_its_pole() {
     let cos = libm::cos(2.0);
     for step in 1..40 {
         let z = 0.05 * f64::from(step) - 1.025;
-        let ray = ExactRay::new(DVec3::new(0.3, cos * z, 3.0), DVec3::NEG_Z).expect("a ray");
+        let ray = QueryRay::new(DVec3::new(0.3, cos * z, 3.0), DVec3::NEG_Z).expect("a ray");
         let [answer] = Query::new(&model).proven(&[ray], false)[..] else { panic!("one answer") };
         assert_eq!(answer.verdict, Verdict::Hit, "{z}");
         assert!((answer.t - (3.0 - z)).abs() < 1e-12, "{} is not {}", answer.t, 3.0 - z);

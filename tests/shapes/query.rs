@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::fs;
 use std::time::Instant;
 use tabray::query::first::first_of;
-use tabray::query::{ExactRay, Query, Verdict};
+use tabray::query::{Query, QueryRay, Verdict};
 
 struct Random(Pcg64);
 
@@ -41,7 +41,7 @@ fn a_tree_leaves_out_what_no_ray_hits_first() {
     let rays: Vec<_> = (0..400)
         .filter_map(|_| {
             let origin = 7.0 * random.vector();
-            ExactRay::new(origin, 4.0 * random.vector() - origin)
+            QueryRay::new(origin, 4.0 * random.vector() - origin)
         })
         .collect();
     let found = query.first_hits(&rays);
@@ -63,7 +63,7 @@ fn what_is_hit_is_certain_where_it_is_not_which() {
         "look_at eye { pixeldim 4 3 position 0 0 9 target 0 0 0 angle 40 } material m { }
          sphere one { material m center 0 0 0 radius 1 } sphere two { material m center 0 0 0 radius 1 }",
     );
-    let ray = ExactRay::new(DVec3::new(0.0, 0.25, 4.0), DVec3::new(0.0, 0.0, -1.0)).expect("a ray");
+    let ray = QueryRay::new(DVec3::new(0.0, 0.25, 4.0), DVec3::new(0.0, 0.0, -1.0)).expect("a ray");
     let [answer] = Query::new(&model).proven(&[ray], false)[..] else { panic!("one answer") };
     assert_eq!((answer.verdict, answer.object), (Verdict::Tie, Some(0)));
     for (t_max, verdict) in [(5.0, Verdict::Hit), (2.0, Verdict::Miss), (answer.t, Verdict::Undecided)] {
@@ -95,7 +95,7 @@ fn all_crossings_of_balls_are_the_roots_in_their_order() {
             roots.extend(both.into_iter().filter(|(t, ..)| *t > 0.0));
         }
         roots.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let ray = ExactRay::new(origin, dir).expect("a ray");
+        let ray = QueryRay::new(origin, dir).expect("a ray");
         let mut crossings = query.crossings(&ray, f64::INFINITY, false);
         let last = crossings.pop().expect("what is behind").answer;
         assert_eq!((last.verdict, last.object), (Verdict::Miss, None));
@@ -125,7 +125,7 @@ fn a_ray_through_the_middle_of_a_box_enters_and_leaves_it() {
     );
     let query = Query::new(&model);
     for (dir, half) in [(DVec3::NEG_X, 1.0), (DVec3::NEG_Y, 1.5), (DVec3::NEG_Z, 2.0)] {
-        let ray = ExactRay::new(-10.0 * dir, dir).expect("a ray");
+        let ray = QueryRay::new(-10.0 * dir, dir).expect("a ray");
         let [answer] = query.proven(std::slice::from_ref(&ray), false)[..] else { panic!("one answer") };
         assert_eq!((answer.verdict, answer.t), (Verdict::Hit, 10.0 - half), "{dir}");
         let crossings = query.crossings(&ray, f64::INFINITY, false);
@@ -135,7 +135,7 @@ fn a_ray_through_the_middle_of_a_box_enters_and_leaves_it() {
         assert_eq!(crossings[1].answer.t, 10.0 + half);
     }
     // Along an edge, which belongs to the box, the ray meets it at a corner.
-    let ray = ExactRay::new(DVec3::new(1.0, 9.0, 2.0), DVec3::NEG_Y).expect("a ray");
+    let ray = QueryRay::new(DVec3::new(1.0, 9.0, 2.0), DVec3::NEG_Y).expect("a ray");
     let answer = query.proven(&[ray], false)[0];
     assert_eq!((answer.verdict, answer.t), (Verdict::Hit, 7.5));
 }
@@ -152,7 +152,7 @@ fn the_face_of_a_proven_hit_is_that_of_the_real_ray() {
     let query = Query::new(&model);
     for x in [0.5, 0.3, 0.7, 1.0 / 3.0] {
         for (y, right) in [(f64::next_down(x), 0), (f64::next_up(x), 1)] {
-            let ray = ExactRay::new(DVec3::new(x, y, 2.0), DVec3::NEG_Z).expect("a ray");
+            let ray = QueryRay::new(DVec3::new(x, y, 2.0), DVec3::NEG_Z).expect("a ray");
             let [answer] = query.proven(std::slice::from_ref(&ray), false)[..] else { panic!("one answer") };
             let face = query.surroundings(&ray, &answer).and_then(|surface| surface.face);
             assert_eq!((answer.verdict, face), (Verdict::Hit, Some(right)), "{x} {y}");
@@ -181,7 +181,7 @@ fn a_ray_through_an_edge_takes_about_as_long_in_a_large_mesh() {
         let query = Query::new(&model);
         let rays: Vec<_> = (0..9)
             .map(|at| DVec3::new(2.0, 2.0 + 0.25 * f64::from(at), 9.0))
-            .map(|at| ExactRay::new(at, DVec3::NEG_Z).expect("a ray"))
+            .map(|at| QueryRay::new(at, DVec3::NEG_Z).expect("a ray"))
             .collect();
         let once = || {
             let start = Instant::now();
@@ -222,7 +222,7 @@ fn an_answer_is_a_record_of_one_face() {
             let along = 0.1 + 0.4 * (1.0 + random.part());
             let edge = (1.0 - along) * corners[0] + along * corners[1];
             let origin = DVec3::new(random.part(), 2.0 * random.part(), 5.0);
-            let ray = ExactRay::new(origin, scale * edge - origin).expect("a ray");
+            let ray = QueryRay::new(origin, scale * edge - origin).expect("a ray");
             let rays = std::slice::from_ref(&ray);
             for answer in [query.proven(rays, false)[0], query.traced(rays)[0]] {
                 let Some(surface) = query.surroundings(&ray, &answer) else { continue };
@@ -288,7 +288,7 @@ fn crossings_of_closed_objects_enter_and_leave_in_turns() {
         let (mut crossed, mut open) = (0, 0);
         for _ in 0..150 {
             let origin = 3.0 * random.vector();
-            let ray = ExactRay::new(origin, random.vector() - origin).expect("a ray");
+            let ray = QueryRay::new(origin, random.vector() - origin).expect("a ray");
             let mut crossings = query.crossings(&ray, f64::INFINITY, false);
             let end = crossings.pop().expect("what is behind").answer;
             open += u32::from(end.verdict != Verdict::Miss);
@@ -326,7 +326,7 @@ fn rays_through_vertices_and_edges_are_decided() {
         ([2.0, 0.0, 0.5], [-1.0, 1.0, 0.0], None),
         ([3.0, 1.0, 0.0], [-1.0, 0.0, 0.0], None),
     ] {
-        let ray = ExactRay::new(origin.into(), dir.into()).expect("a ray");
+        let ray = QueryRay::new(origin.into(), dir.into()).expect("a ray");
         let first = query.proven(std::slice::from_ref(&ray), false)[0];
         assert_eq!(first.verdict, Verdict::Hit, "{origin:?}");
         let crossings = query.crossings(&ray, f64::INFINITY, false);

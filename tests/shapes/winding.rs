@@ -12,7 +12,7 @@ use std::cmp::Ordering::{self, Equal, Greater, Less};
 use std::fmt::Write;
 use std::fs;
 use tabray::geometry::{MISS, Ray, RayRange};
-use tabray::query::{ExactRay, Query, Verdict};
+use tabray::query::{Query, QueryRay, Verdict};
 use tabray::scene::Model;
 use tempfile::TempDir;
 
@@ -179,7 +179,7 @@ fn compare(faces: &[Face], model: &Model, rays: impl Iterator<Item = [[i64; 3]; 
     let mut counts = [0; 3];
     for [origin, dir] in rays {
         let [from, along] = [origin, dir].map(|of| DVec3::from(of.map(|part| part as f64)));
-        let Some(exact) = ExactRay::new(from, along) else { continue };
+        let Some(exact) = QueryRay::new(from, along) else { continue };
         if let Some(truth) = first(faces, &vector(from.into()), &vector(along.into())) {
             let [answer] = query.proven(&[exact], false)[..] else { panic!("one answer") };
             let is_there = |t: f64| t.next_up() >= answer.bounds.low && t.next_down() <= answer.bounds.high;

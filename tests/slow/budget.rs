@@ -5,7 +5,7 @@ use std::fs;
 
 /// The most instructions for a ray: about 6 ms. The small picture bears the search of the box for parts without the
 /// surface, which all rays share.
-const MOST: f64 = 2e7;
+const MAX_INSTRUCTIONS: f64 = 2e7;
 
 /// Formulas with poles, jumps, the ends of domains and waves without end. Before the work for a ray was limited, they took
 /// 5e7 to 5e8.
@@ -35,7 +35,7 @@ fn a_ray_at_a_wild_formula_takes_a_limited_number_of_instructions() {
         let Some(count) = instructions(&["render", path, "-o", &image, "--quiet"]) else { return };
         let a_ray = count as f64 / f64::from(width * height);
         println!("{a_ray:8.0} {formula}");
-        if a_ray > MOST {
+        if a_ray > MAX_INSTRUCTIONS {
             long.push(format!("{formula}: {a_ray:.0}"));
         }
     }

@@ -11,7 +11,7 @@ use crate::oracle::ray::Ray;
 use crate::oracle::text::Scene;
 use crate::oracle::wide::Wide;
 use glam::DVec3;
-use tabray::query::{ExactRay, Query, Verdict};
+use tabray::query::{Query, QueryRay, Verdict};
 
 /// The number of rays of each scene.
 const RAYS: usize = 24;
@@ -105,7 +105,7 @@ fn ask(random: &mut Random) -> (Vec<String>, usize) {
             continue;
         }
         decided += 1;
-        let ray = ExactRay::new(DVec3::from(from), DVec3::from(dir)).expect("a ray");
+        let ray = QueryRay::new(DVec3::from(from), DVec3::from(dir)).expect("a ray");
         let ray = std::slice::from_ref(&ray);
         let answer = query.proven(ray, false)[0];
         let is_right = match (answer.verdict, &truth.place) {

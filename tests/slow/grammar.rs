@@ -23,7 +23,7 @@ use std::env;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use tabray::query::{Answer, ExactRay, Query, Verdict};
+use tabray::query::{Answer, Query, QueryRay, Verdict};
 use tabray::scene;
 
 /// The number of rays of each scene.
@@ -182,9 +182,9 @@ struct Tally {
 
 impl Tally {
     fn keep(&mut self, kind: &'static str, pair: &str, text: impl FnOnce() -> String) {
-        const MOST: usize = 400;
+        const MAX_KEPT: usize = 400;
         let is_new = !self.kept.iter().any(|kept| (kept.kind, &*kept.pair) == (kind, pair));
-        if is_new && self.kept.len() < MOST {
+        if is_new && self.kept.len() < MAX_KEPT {
             self.kept.push(Kept { kind, pair: pair.to_owned(), text: text() });
         }
     }
@@ -260,7 +260,7 @@ fn ask(seed: u64, number: u64) -> Tally {
     let query = Query::new(&loaded.model);
     for ray in &rays {
         let [from, dir] = ray.map(DVec3::from);
-        let Some(exact) = ExactRay::new(from, dir) else { continue };
+        let Some(exact) = QueryRay::new(from, dir) else { continue };
         let exact = std::slice::from_ref(&exact);
         let answer = query.proven(exact, false)[0];
         tally.rays += 1;

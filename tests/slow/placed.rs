@@ -7,7 +7,7 @@ use std::fs;
 use tabray::scene::{Kind, Syntax, dump};
 
 /// The most that copies in the places of the objects themselves may cost, as a multiple of what these cost.
-const MOST: f64 = 3.0;
+const MAX_RATIO: f64 = 3.0;
 
 /// Measures, for each type of object, those in its own scene, and copies of them in the same places: each time the
 /// instructions of the image, less those of the scene without these objects.
@@ -47,7 +47,7 @@ fn a_copy_of_any_object_costs_three_times_the_object_at_most() {
         let ratio = copies / objects;
         println!("{:16} {:8.1} {ratio:8.2}", entity.name, 1e-6 * objects);
         assert!(objects > 0.0, "{}: what is not seen costs nothing", entity.name);
-        if ratio > MOST {
+        if ratio > MAX_RATIO {
             dear.push(format!("{}: {ratio:.2} times", entity.name));
         }
     }

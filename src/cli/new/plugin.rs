@@ -113,7 +113,6 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
 /// The part of a `Cargo.toml` that is read here.
 #[derive(Deserialize)]
 struct Manifest {
-    /// The package.
     package: Package,
 }
 

@@ -27,7 +27,7 @@ pub enum Failure {
     /// The command stopped with a part of its work done, and the user was told already.
     Stopped,
     /// Faults were printed already.
-    Told,
+    AlreadyReported,
     /// Some of several scenes failed, which was printed already; with the worst exit status of these.
     Several(u8),
 }
@@ -125,7 +125,7 @@ fn report_and_status(failure: &Failure) -> u8 {
         }
         Failure::Failed(message) => messages::error(message, None),
         Failure::Interrupted(what) => messages::note(&format!("interrupted: {what}")),
-        Failure::Stopped | Failure::Told | Failure::Several(_) => {}
+        Failure::Stopped | Failure::AlreadyReported | Failure::Several(_) => {}
     }
     if let (Failure::Interrupted(_) | Failure::Stopped, Some([done, all])) = (failure, progress::overall()) {
         messages::note(&format!("{done} of {all} scenes are rendered"));
@@ -138,7 +138,7 @@ pub fn status(failure: &Failure) -> u8 {
     match failure {
         Failure::Several(worst) => *worst,
         Failure::Failed(_) | Failure::Unread(..) => 1,
-        Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,
+        Failure::Scene(_) | Failure::Usage(..) | Failure::AlreadyReported => 2,
         Failure::Interrupted(_) | Failure::Stopped => 130,
     }
 }

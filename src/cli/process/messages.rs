@@ -22,7 +22,7 @@ pub enum Form {
 
 /// Which messages are printed.
 #[derive(Clone, Copy, Default, PartialEq)]
-pub enum Told {
+pub enum Verbosity {
     /// All of them.
     #[default]
     All,
@@ -33,14 +33,14 @@ pub enum Told {
 }
 
 /// The form of messages, and which of them are printed.
-static CHOSEN: OnceLock<(Form, Told)> = OnceLock::new();
+static CHOSEN: OnceLock<(Form, Verbosity)> = OnceLock::new();
 
 /// Sets the form of all later messages, and which of them are printed.
-pub fn choose(form: Form, told: Told) {
-    CHOSEN.get_or_init(|| (form, told));
+pub fn choose(form: Form, verbosity: Verbosity) {
+    CHOSEN.get_or_init(|| (form, verbosity));
 }
 
-fn told() -> Told {
+fn verbosity() -> Verbosity {
     CHOSEN.get().copied().unwrap_or_default().1
 }
 
@@ -50,12 +50,12 @@ fn form() -> Form {
 
 /// Tells whether at most errors and warnings are printed.
 pub fn is_quiet() -> bool {
-    told() != Told::All
+    verbosity() != Verbosity::All
 }
 
 /// Prints the warnings about a scene that has no errors.
 pub fn warnings(warnings: &Report) {
-    if told() != Told::Errors {
+    if verbosity() != Verbosity::Errors {
         report(warnings);
     }
 }
@@ -76,7 +76,7 @@ pub fn error(message: &str, help: Option<&str>) {
 
 /// Prints a warning about an image, and what the user can do about it.
 pub fn warning(message: &str, help: Option<&str>) {
-    if told() != Told::Errors {
+    if verbosity() != Verbosity::Errors {
         titled("warning", Level::WARNING, message, help);
     }
 }

@@ -11,7 +11,7 @@ use tabray_core::world::certify::Doubt;
 use tabray_core::world::rules::Rules;
 
 /// The maximum number of reasons that are listed why pixels could not be decided.
-const MOST_REASONS: usize = 4;
+const MAX_REASONS: usize = 4;
 
 /// Tells how many pixels are certified, and how much the others may be off, if anything is proven.
 pub fn report_proofs(proofs: Proofs, plan: &Plan) {
@@ -63,7 +63,7 @@ fn warn_of_undecided(undecided: &Undecided, model: &Model) {
         if undecided.0.len() > 1 { format!("{why} ({pixels})") } else { why }
     };
     let reasons: Vec<_> = undecided.0.iter().map(of).collect();
-    let (named, others) = reasons.split_at(reasons.len().min(MOST_REASONS));
+    let (named, others) = reasons.split_at(reasons.len().min(MAX_REASONS));
     let more = if others.is_empty() { String::new() } else { format!("; and {} more", others.len()) };
     messages::warning(
         &format!(

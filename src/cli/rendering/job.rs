@@ -20,7 +20,7 @@ use tabray_tools::pixels::TileSet;
 
 /// The maximum number of blank pixels that are written in place of missing ones. If more are missing, the file ends at
 /// the first row of which nothing is rendered.
-const MOST_BLANK: usize = 1 << 24;
+const MAX_BLANK: usize = 1 << 24;
 
 /// The message if a render of full range is stopped.
 const UNKEPT: &str = "an EXR or a PFM is written only when it is complete: nothing is written";
@@ -75,7 +75,7 @@ impl Job<'_> {
                     return Some(vec![Err(io::ErrorKind::InvalidData.into())]);
                 }
                 // Rendering has ended or stopped.
-                None if (rows.end - next) * wide > MOST_BLANK => {
+                None if (rows.end - next) * wide > MAX_BLANK => {
                     is_cut = true;
                     // One row more, so that the compressor writes the rows before it.
                     return Some(vec![Ok(vec![0; 3 * wide]), Err(io::ErrorKind::Other.into())]);

@@ -21,7 +21,7 @@ use tabray_core::render::division::{self, Grid};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
-use tabray_tools::pixels::{Label, MOST_PARTS, PixelFormat, Reader, Writer, take_tile};
+use tabray_tools::pixels::{Label, MAX_PARTS, PixelFormat, Reader, Writer, take_tile};
 
 /// The message for a stopped part, of which nothing is kept.
 const UNKEPT: &str = "the part was not finished, and nothing is written";
@@ -40,10 +40,10 @@ pub struct Args {
 fn share(text: &str) -> Result<[usize; 2], String> {
     let (number, of) = text.split_once('/').unwrap_or_default();
     let wrong =
-        || format!("give a part as `3/16`: its number, from 1, and of how many parts, up to {MOST_PARTS}");
+        || format!("give a part as `3/16`: its number, from 1, and of how many parts, up to {MAX_PARTS}");
     let [number, of]: [usize; 2] = [number.parse().map_err(|_| wrong())?, of.parse().map_err(|_| wrong())?];
     match (number, of) {
-        (_, of) if !(1..=MOST_PARTS).contains(&of) => Err(wrong()),
+        (_, of) if !(1..=MAX_PARTS).contains(&of) => Err(wrong()),
         (0, _) => Err(format!("parts are counted from 1: the first is `1/{of}`")),
         _ if number > of => Err(format!("the last of {of} parts is `{of}/{of}`")),
         _ => Ok([number, of]),

@@ -1,6 +1,6 @@
 //! Answers about the first hits of rays.
 
-use super::ray::ExactRay;
+use super::ray::QueryRay;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Interval, Wide};
 use tabray_world::certify::{self, Precision};
@@ -64,7 +64,7 @@ impl Answer {
 
     /// Returns what is proven about a hit in these bounds, in lengths of the sight's direction.
     pub(super) fn at(
-        ray: &ExactRay,
+        ray: &QueryRay,
         verdict: Verdict,
         (object, part): (Option<usize>, Option<usize>),
         at: Wide,
@@ -79,7 +79,7 @@ impl Answer {
     /// Returns what 53 bits prove about a hit of a part in these bounds of the ray's t, at the distance that the tracer
     /// found.
     pub(super) fn traced(
-        ray: &ExactRay,
+        ray: &QueryRay,
         (object, part): (usize, usize),
         bounds: Interval,
         distance: f64,

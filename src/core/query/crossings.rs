@@ -1,7 +1,7 @@
 //! All crossings of a ray and the surfaces of a scene.
 
 use super::answer::{Answer, Verdict};
-use super::ray::ExactRay;
+use super::ray::QueryRay;
 use super::scene::Query;
 use f256::f256;
 use std::cmp::Ordering;
@@ -44,7 +44,7 @@ impl Query<'_> {
     /// Returns all crossings of a ray and the scene's surfaces before a t, in the order in which the ray meets them.
     /// The last entry tells what is known behind them: nothing, where the ray touches a surface or passes through an
     /// edge. `is_tight` narrows all bounds with 237 bits.
-    pub fn crossings(&self, ray: &ExactRay, t_max: f64, is_tight: bool) -> Vec<Crossing> {
+    pub fn crossings(&self, ray: &QueryRay, t_max: f64, is_tight: bool) -> Vec<Crossing> {
         let first = if is_tight { Precision::Octuple } else { Precision::Double };
         let near = self.near(ray, f256::INFINITY);
         let objects: Vec<_> = near.chunk_by(|one, other| self.number(*one) == self.number(*other)).collect();
@@ -85,7 +85,7 @@ impl Query<'_> {
     }
 
     /// Returns what is known of the crossings of a ray and an object, given its parts.
-    fn known(&self, parts: &[usize], ray: &ExactRay, precision: Precision) -> Known {
+    fn known(&self, parts: &[usize], ray: &QueryRay, precision: Precision) -> Known {
         let (mut all, mut open) = (Vec::new(), f256::INFINITY);
         for object in parts.iter().copied() {
             let shape = self.shape(object);
@@ -123,7 +123,7 @@ fn nearer(one: &Found, other: &Found) -> Ordering {
 type Along = (Vec<(Wide, bool, usize)>, f256);
 
 /// Returns the crossings of a ray and a shape in one precision.
-fn along<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Along {
+fn along<F: Precise>(shape: &AnyShape, ray: &QueryRay) -> Along {
     let line = ray.sight().line::<Interval<F>>();
     let Some(proven) = shape.proven() else { return (Vec::new(), f256::of(0.0)) };
     let (mut crossings, mut found) = (solid::Crossings::new(proven, &line, None), Vec::new());
@@ -140,7 +140,7 @@ fn along<F: Precise>(shape: &AnyShape, ray: &ExactRay) -> Along {
 
 /// Returns all crossings of a ray and a shape, found with fractions, which recognise a ray that passes exactly
 /// through an edge; `None` where they do not find all.
-fn exactly(shape: &AnyShape, ray: &ExactRay) -> Option<Along> {
+fn exactly(shape: &AnyShape, ray: &QueryRay) -> Option<Along> {
     if shape.certify(ray.sight(), Precision::Octuple) == Enclosure::Misses {
         return Some((Vec::new(), f256::INFINITY));
     }

@@ -8,13 +8,13 @@ use tabray_world::geometry::sight::Sight;
 
 /// A ray whose digits all count: the half-line from a point along a direction, which need not be a unit vector.
 #[derive(Clone, Debug)]
-pub struct ExactRay {
+pub struct QueryRay {
     sight: Sight,
     /// The t of this ray at t = 1 of the sight, a power of 2; `None` where t counts world units.
     scale: Option<f64>,
 }
 
-impl ExactRay {
+impl QueryRay {
     /// Returns the ray from a point along a direction, whose length is the unit of t. `None` where the direction is 0
     /// or any number is not finite.
     pub fn new(origin: DVec3, dir: DVec3) -> Option<Self> {
@@ -90,7 +90,7 @@ fn rounded_down(number: f256) -> f64 {
 mod tests {
     use super::*;
 
-    fn at(ray: &ExactRay, t: f64) -> Interval {
+    fn at(ray: &QueryRay, t: f64) -> Interval {
         ray.t(Wide::point(f256::of(t)))
     }
 
@@ -98,7 +98,7 @@ mod tests {
     fn t_counts_lengths_of_the_direction_as_it_is_given() {
         for dir in [DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 1e-200, 0.0), DVec3::new(1e250, 1e-30, 5e-324)]
         {
-            let ray = ExactRay::new(DVec3::ONE, dir).expect("a ray");
+            let ray = QueryRay::new(DVec3::ONE, dir).expect("a ray");
             let inner = ray.sight().line::<f64>().dir;
             let times = dir.max_element() / inner.iter().copied().fold(0.0, f64::max);
             assert_eq!(at(&ray, times), Interval { low: 1.0, high: 1.0 }, "{dir}");
@@ -108,14 +108,14 @@ mod tests {
     #[test]
     fn what_is_no_ray_is_none() {
         for dir in [DVec3::ZERO, DVec3::new(f64::NAN, 1.0, 0.0), DVec3::new(f64::INFINITY, 0.0, 0.0)] {
-            assert!(ExactRay::new(DVec3::ZERO, dir).is_none(), "{dir}");
+            assert!(QueryRay::new(DVec3::ZERO, dir).is_none(), "{dir}");
         }
-        assert!(ExactRay::new(DVec3::new(0.0, f64::NAN, 0.0), DVec3::X).is_none());
+        assert!(QueryRay::new(DVec3::new(0.0, f64::NAN, 0.0), DVec3::X).is_none());
     }
 
     #[test]
     fn bounds_are_rounded_outward() {
-        let ray = ExactRay::new(DVec3::ZERO, DVec3::X).expect("a ray");
+        let ray = QueryRay::new(DVec3::ZERO, DVec3::X).expect("a ray");
         let third = f256::of(1.0) / f256::of(3.0);
         let Interval { low, high } = ray.t(Wide::point(third));
         assert!(f256::of(low) < third && third < f256::of(high) && low.next_up() == high);

@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, Surroundings, Verdict};
 use super::first::{Candidate, FirstHit, FirstHits, first_by, first_of, last_end};
-use super::ray::ExactRay;
+use super::ray::QueryRay;
 use f256::f256;
 use std::slice;
 use tabray_exact::interval::{Float, Interval, Wide};
@@ -41,16 +41,16 @@ impl<'m> Query<'m> {
 
     /// Returns the ray through the middle of a pixel of the scene's camera, by column and row from the lower left
     /// corner.
-    pub fn camera_ray(&self, x: usize, y: usize) -> ExactRay {
-        ExactRay::of_camera(self.plan.camera.sight(x as f64, y as f64))
+    pub fn camera_ray(&self, x: usize, y: usize) -> QueryRay {
+        QueryRay::of_camera(self.plan.camera.sight(x as f64, y as f64))
     }
 
     /// Finds the first hit of each ray as the tracer does, many rays at a time.
-    pub fn first_hits(&self, rays: &[ExactRay]) -> Vec<Option<Hit<'m>>> {
+    pub fn first_hits(&self, rays: &[QueryRay]) -> Vec<Option<Hit<'m>>> {
         self.found(rays, true)
     }
 
-    fn found(&self, rays: &[ExactRay], decides: bool) -> Vec<Option<Hit<'m>>> {
+    fn found(&self, rays: &[QueryRay], decides: bool) -> Vec<Option<Hit<'m>>> {
         let sights: Vec<_> = rays.iter().map(|ray| ray.sight().clone()).collect();
         trace::first_hits(&self.plan, &sights, decides)
     }
@@ -60,7 +60,7 @@ impl<'m> Query<'m> {
     ///
     /// A proof is about the real numbers of the scene and of the ray ([`certify`](tabray_world::certify)). In a scene
     /// with many objects, it leaves out those whose bounding boxes the ray certainly misses or meets later.
-    pub fn first(&self, ray: &ExactRay, found: Option<&Hit>) -> (FirstHits, Precision) {
+    pub fn first(&self, ray: &QueryRay, found: Option<&Hit>) -> (FirstHits, Precision) {
         let shape = |index: usize| (index, self.shape(index));
         let end = match (&self.plan.tree, found) {
             (Some(_), Some(hit)) => last_end([shape(hit.index)], ray.sight()),
@@ -71,7 +71,7 @@ impl<'m> Query<'m> {
 
     /// Returns the objects that a ray may meet at or before a distance in lengths of the sight's direction, in the
     /// order of the scene; all of them where there are few.
-    pub(super) fn near(&self, ray: &ExactRay, end: f256) -> Vec<usize> {
+    pub(super) fn near(&self, ray: &QueryRay, end: f256) -> Vec<usize> {
         near(&self.plan, ray.sight(), end)
     }
 
@@ -83,8 +83,8 @@ impl<'m> Query<'m> {
 
 impl Query<'_> {
     /// Returns the first hits of rays as the tracer finds them, without a proof.
-    pub fn traced(&self, rays: &[ExactRay]) -> Vec<Answer> {
-        let answer = |(ray, hit): (&ExactRay, Option<Hit>)| match hit {
+    pub fn traced(&self, rays: &[QueryRay]) -> Vec<Answer> {
+        let answer = |(ray, hit): (&QueryRay, Option<Hit>)| match hit {
             None => Answer::miss(None),
             Some(Hit { index, distance, .. }) => Answer {
                 verdict: Verdict::Hit,
@@ -101,7 +101,7 @@ impl Query<'_> {
 
     /// Returns what is proven about the first hits of rays. With 53 bits, bounds are some units in the last place of
     /// t wide. `is_tight` narrows them with 237 bits, which takes many times as long.
-    pub fn proven(&self, rays: &[ExactRay], is_tight: bool) -> Vec<Answer> {
+    pub fn proven(&self, rays: &[QueryRay], is_tight: bool) -> Vec<Answer> {
         // Where there is a tree, what the tracer finds shortens the search. Its own proofs would be made twice.
         let mut found: Vec<_> = match self.plan.tree {
             Some(_) => self.found(rays, false),
@@ -123,14 +123,14 @@ impl Query<'_> {
     }
 
     /// Tells for each ray whether anything may be hit before its end, a t, as for shadows. `false` is proven.
-    pub fn occluded(&self, rays: &[ExactRay], ends: &[f64]) -> Vec<bool> {
+    pub fn occluded(&self, rays: &[QueryRay], ends: &[f64]) -> Vec<bool> {
         let answers = self.proven(rays, false).into_iter().zip(ends);
         answers.map(|(answer, end)| answer.any_within(*end).verdict != Verdict::Miss).collect()
     }
 
     fn proof(
         &self,
-        ray: &ExactRay,
+        ray: &QueryRay,
         (first, precision): (FirstHits, Precision),
         found: Option<&Hit>,
         is_tight: bool,
@@ -185,7 +185,7 @@ impl Query<'_> {
     /// Returns the surface at the hit of an answer; `None` for an answer without a hit. It is that of the part that the
     /// proof names, or without a proof, of the one that the tracer finds. Where the ray passes through an edge, that is
     /// one of those that share the edge.
-    pub fn surroundings(&self, ray: &ExactRay, answer: &Answer) -> Option<Surroundings> {
+    pub fn surroundings(&self, ray: &QueryRay, answer: &Answer) -> Option<Surroundings> {
         let shape = self.shape(answer.object.filter(|_| answer.distance.is_finite())?);
         let point = ray.at(answer.distance);
         let SurfaceHit { normal, uv, face } =

@@ -39,7 +39,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     for scene in &args.scenes {
         let failure = match one(registry, scene, args.check) {
             Ok(true) => continue,
-            Ok(false) => Failure::Told,
+            Ok(false) => Failure::AlreadyReported,
             Err(failure) => failure,
         };
         report(&failure);

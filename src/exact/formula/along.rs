@@ -1,6 +1,6 @@
 //! Formulas along lines, as polynomials. Operations work in place, because copying a polynomial for each would be slow.
 
-use super::program::{MOST_REGISTERS, Program, Value, Values};
+use super::program::{MAX_REGISTERS, Program, Value, Values};
 use super::step::Step;
 use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
@@ -80,7 +80,7 @@ pub(super) fn by_products(steps: &[Step], variables: usize, which: Products) -> 
         });
     }
     let program = Program::of(&Values { list: new.list, result: places[given.result] }, variables);
-    (program.registers <= MOST_REGISTERS).then_some(program)
+    (program.registers <= MAX_REGISTERS).then_some(program)
 }
 
 struct Powers {

@@ -6,7 +6,7 @@
 //! Source: M. J. Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces" (2020), which shortens
 //! tapes for the tiles of an image.
 
-use super::program::{MOST_REGISTERS, Program, Value, Values};
+use super::program::{MAX_REGISTERS, Program, Value, Values};
 use super::step::{Function, Step};
 use crate::interval::Interval;
 use std::sync::{Arc, OnceLock};
@@ -156,7 +156,7 @@ impl Cell {
             .then(|| Program::of(&values, 3))
             // A shared value occupies a register. The program without some operations may thus need more registers than
             // the long one.
-            .filter(|program| program.registers <= MOST_REGISTERS);
+            .filter(|program| program.registers <= MAX_REGISTERS);
         let cut = is_cut.then(|| {
             let width = |axis: usize| place[axis].width();
             let axis =

@@ -2,7 +2,7 @@
 
 use super::Formula;
 use super::field::Field;
-use super::program::{Instruction, MOST_REGISTERS};
+use super::program::{Instruction, MAX_REGISTERS};
 use super::step::{Function, Step};
 use super::variables::SPACE;
 use crate::interval::{Float, Interval};
@@ -11,7 +11,7 @@ use std::mem::take;
 use std::sync::Arc;
 
 /// The maximum number of jumps in a box. The formula is evaluated on both sides of each.
-const MOST_JUMPS: u32 = 4;
+const MAX_JUMPS: u32 = 4;
 
 impl Field {
     /// Returns a formula that is negative where this one is undefined: where the operand of a square root or a
@@ -80,7 +80,7 @@ impl Field {
         loop {
             let mut jumps = 0;
             let value = self.beside(at, sides, &mut jumps);
-            if jumps == 0 || jumps > MOST_JUMPS || value.is_some_and(Interval::has_zero) {
+            if jumps == 0 || jumps > MAX_JUMPS || value.is_some_and(Interval::has_zero) {
                 return false;
             }
             let Some(last) = (0..jumps).rev().find(|jump| sides >> jump & 1 == 0) else { return true };
@@ -93,14 +93,14 @@ impl Field {
     /// occur there. A tangent with several poles counts as too many.
     fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Option<Interval<F>> {
         let program = self.program();
-        let mut registers = [at[0]; MOST_REGISTERS];
+        let mut registers = [at[0]; MAX_REGISTERS];
         registers[..3].copy_from_slice(&at);
-        let mut undefined = [false; MOST_REGISTERS];
+        let mut undefined = [false; MAX_REGISTERS];
         for &Instruction { step, operands, result } in &program.instructions {
             let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
             let c = || registers[usize::from(operands[2])];
             let mut value = step.of::<_, true>(a, b, c, None);
-            let (zero, is_above) = (F::of(0.0), *jumps < MOST_JUMPS && sides >> *jumps & 1 == 1);
+            let (zero, is_above) = (F::of(0.0), *jumps < MAX_JUMPS && sides >> *jumps & 1 == 1);
             let without = |which: usize| undefined[usize::from(operands[which])];
             let mut is_undefined = (0..step.operands()).any(without);
             // Tells whether a divisor is 0 at most on this side of its pole.
@@ -153,7 +153,7 @@ impl Field {
                         true => Interval { low: before.low, high: F::INFINITY },
                         false => Interval { low: -F::INFINITY, high: after.high },
                     };
-                    *jumps += if is_single { 1 } else { MOST_JUMPS + 1 };
+                    *jumps += if is_single { 1 } else { MAX_JUMPS + 1 };
                 }
                 Step::Call(Function::Atan2) if a.has_zero() && b.high < zero => {
                     let height = Interval { low: zero, high: if is_above { a.high } else { -a.low } };

@@ -2,7 +2,7 @@
 
 use super::along::{Products, by_products};
 use super::cells::{Cells, is_choice};
-use super::program::{MOST_REGISTERS, Program};
+use super::program::{MAX_REGISTERS, Program};
 use super::step::{Function, Step};
 use super::variables::{CURVE, PATCH, SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
@@ -12,7 +12,7 @@ use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 use std::sync::Arc;
 
-/// The number of registers that is enough for most formulas of space. Setting up [`MOST_REGISTERS`] takes longer than
+/// The number of registers that is enough for most formulas of space. Setting up [`MAX_REGISTERS`] takes longer than
 /// evaluating most formulas.
 const SOME_REGISTERS: usize = 12;
 
@@ -34,7 +34,6 @@ pub type CurveField = FieldOf<{ CURVE.len() }>;
 /// A formula in the variables of [`SPACE`], [`PATCH`], [`CURVE`] or [`SURFACE`], depending on their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldOf<const N: usize> {
-    /// The formula.
     formula: Arc<Formula>,
     /// The formula as read, from which this one may have been simplified.
     written: Arc<Formula>,
@@ -149,7 +148,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         if of.program.registers <= SOME_REGISTERS {
             with(&mut [at[0]; SOME_REGISTERS])
         } else {
-            with(&mut [at[0]; MOST_REGISTERS])
+            with(&mut [at[0]; MAX_REGISTERS])
         }
     }
 
@@ -173,7 +172,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         } else if COUNT == SURFACE.len() && registers <= MORE_REGISTERS {
             with(&mut [at[0]; MORE_REGISTERS])
         } else {
-            with(&mut [at[0]; MOST_REGISTERS])
+            with(&mut [at[0]; MAX_REGISTERS])
         }
     }
 }

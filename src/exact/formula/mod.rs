@@ -31,7 +31,7 @@ use crate::f64x8::LANES;
 use crate::scalar::Scalar;
 use crate::spline::Spline;
 use parser::Operations;
-use program::{Instruction, MOST_REGISTERS, Program};
+use program::{Instruction, MAX_REGISTERS, Program};
 use std::fmt;
 use std::sync::Arc;
 use step::{Function, Step};
@@ -160,7 +160,7 @@ impl Formula {
         if self.program.registers <= FEW_REGISTERS {
             self.run(&mut [y; FEW_REGISTERS])
         } else {
-            self.run(&mut [y; MOST_REGISTERS])
+            self.run(&mut [y; MAX_REGISTERS])
         }
     }
 

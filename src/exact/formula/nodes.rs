@@ -18,16 +18,16 @@ const ROUNDED_UP: f64 = 1.0 + 1e-6;
 
 /// The maximum degree. With higher degrees, the errors of values grow until operations on the coefficients are far more
 /// precise.
-const MOST_DEGREE: usize = 16;
+const MAX_DEGREE: usize = 16;
 
 /// The maximum number of registers of a program.
-const MOST_REGISTERS: usize = 24;
+const MAX_REGISTERS: usize = 24;
 
 /// The number of registers that is enough for most programs.
 const FEW_REGISTERS: usize = 8;
 
 /// The maximum error of a coordinate, as a fraction of the box, for which errors of values are known.
-const MOST_OFF: f64 = 1e-9;
+const MAX_ERROR: f64 = 1e-9;
 
 /// A box is enlarged by this fraction of its sides, because rounding moves a line out of the box.
 const AROUND: f64 = 1.0 / 1024.0;
@@ -71,8 +71,8 @@ impl Nodes {
             Interval { low: low[axis] - slack, high: high[axis] + slack }
         });
         let size = within.iter().fold(0.0, |size: f64, side| size.max(side.magnitude()));
-        let (program, most_off) = (field.by_products(), MOST_OFF * size);
-        if program.registers > MOST_REGISTERS || degree > MOST_DEGREE {
+        let (program, most_off) = (field.by_products(), MAX_ERROR * size);
+        if program.registers > MAX_REGISTERS || degree > MAX_DEGREE {
             return None;
         }
         let error = |off: f64| error(program, within, off).filter(|error| *error < f64::INFINITY);
@@ -103,7 +103,7 @@ impl Nodes {
             7..=8 => self.form_by::<N, 8>(program, line, piece),
             9..=10 => self.form_by::<N, 10>(program, line, piece),
             11..=14 => self.form_by::<N, 14>(program, line, piece),
-            _ => self.form_by::<N, { MOST_DEGREE + 2 }>(program, line, piece),
+            _ => self.form_by::<N, { MAX_DEGREE + 2 }>(program, line, piece),
         }
     }
 
@@ -130,7 +130,7 @@ impl Nodes {
         }
         let values = match program.registers {
             ..=FEW_REGISTERS => run::<LANES, FEW_REGISTERS>(program, at),
-            _ => run::<LANES, MOST_REGISTERS>(program, at),
+            _ => run::<LANES, MAX_REGISTERS>(program, at),
         };
         let (mut coefficients, mut largest) = ([0.0; N], 0.0_f64);
         for (value, weights) in values.iter().zip(&self.weights) {
@@ -250,7 +250,7 @@ fn weights(places: &[f64]) -> Option<Vec<Vec<f64>>> {
 mod tests {
     use super::*;
     use crate::formula::tests::field;
-    use crate::polynomial::{MOST, Polynomial};
+    use crate::polynomial::{MAX_COEFFICIENTS, Polynomial};
 
     #[test]
     fn values_at_nodes_tell_the_coefficients() {
@@ -273,8 +273,8 @@ mod tests {
                     turn: 1e-15,
                 };
                 let piece = Interval { low: -0.8 + 0.2 * number(5), high: 0.9 };
-                let form = nodes.form::<MOST>(&field, &line, piece).expect(text);
-                let along = Polynomial::<DoubleDouble, MOST>::along(piece);
+                let form = nodes.form::<MAX_COEFFICIENTS>(&field, &line, piece).expect(text);
+                let along = Polynomial::<DoubleDouble, MAX_COEFFICIENTS>::along(piece);
                 let place = |axis: usize| {
                     Polynomial::constant(line.base[axis]) + Polynomial::constant(line.dir[axis]) * along
                 };

@@ -7,7 +7,7 @@ use crate::text;
 use std::ops::Range;
 
 /// The maximum number of arguments of a function.
-const MOST_ARGUMENTS: usize = 16;
+const MAX_ARGUMENTS: usize = 16;
 
 /// The maximum length of a formula's text, in bytes, after calls are replaced by the formulas of their functions.
 const LONGEST: usize = 1 << 20;
@@ -53,8 +53,8 @@ pub fn head(text: &str) -> Option<(&str, Result<Vec<&str>, String>)> {
                 return Err(format!("`{argument}` is an argument twice"));
             }
         }
-        if arguments.len() > MOST_ARGUMENTS {
-            return Err(format!("it has more than {MOST_ARGUMENTS} arguments"));
+        if arguments.len() > MAX_ARGUMENTS {
+            return Err(format!("it has more than {MAX_ARGUMENTS} arguments"));
         }
         Ok(arguments)
     };

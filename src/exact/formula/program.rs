@@ -37,7 +37,7 @@ pub(super) struct Program {
 
 /// The number of registers of the largest program: one for each variable, and those for the deepest nesting, with a
 /// square root of its operand and a 0 as the innermost operation.
-pub(super) const MOST_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
+pub(super) const MAX_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 
 /// An operation, and the indices of its operands.
 #[derive(Clone, Copy, Debug)]
@@ -131,7 +131,7 @@ impl Values {
     /// because a shared value occupies a register until its last use.
     pub fn new(steps: &[Step], variables: usize) -> Self {
         let shared = values(steps, variables, true);
-        let fits = |values: &Self| Program::of(values, variables).registers <= MOST_REGISTERS;
+        let fits = |values: &Self| Program::of(values, variables).registers <= MAX_REGISTERS;
         // Kernels compute formulas in one variable, with few registers.
         let paired = if variables > 1 { shared.paired(variables) } else { None };
         if let Some(paired) = paired.filter(fits) {

@@ -4,14 +4,14 @@ use super::Formula;
 use super::field::Field;
 use super::step::Step;
 use super::variables::SPACE;
-use crate::polynomial::MOST;
+use crate::polynomial::MAX_COEFFICIENTS;
 use std::sync::Arc;
 
 /// The maximum number of operations of a numerator.
-const MOST_STEPS: usize = 1 << 12;
+const MAX_STEPS: usize = 1 << 12;
 
 /// The maximum power of a factor of a denominator. A polynomial of a higher degree is not expanded along a line.
-const MOST_POWER: i32 = MOST as i32;
+const MAX_POWER: i32 = MAX_COEFFICIENTS as i32;
 
 /// The operations of a numerator, and the distinct factors of its denominator, with their powers.
 #[derive(Clone, Default)]
@@ -87,7 +87,7 @@ impl Quotient {
                 Step::Powi(exponent) => first = first.power(*exponent)?,
                 Step::Spline | Step::Call(_) => return None,
             }
-            if first.above.len() > MOST_STEPS || first.below.iter().any(|(_, power)| *power > MOST_POWER) {
+            if first.above.len() > MAX_STEPS || first.below.iter().any(|(_, power)| *power > MAX_POWER) {
                 return None;
             }
             waiting.push(first);

@@ -7,17 +7,17 @@ use super::field::Field;
 use super::program::{Instruction, Program};
 use super::step::Step;
 use crate::interval::Fraction;
-use crate::polynomial::MOST;
+use crate::polynomial::MAX_COEFFICIENTS;
 use crate::roots::whole::{Dyadic, Whole};
 use dashu_int::IBig;
 use dashu_int::ops::{Abs, BitTest};
 
 /// The maximum power of two for scaling numbers to add them, or to make them integers. The 12th power of 1e-300 is
 /// smaller, and not worth the time.
-const MOST_BITS: i64 = 1 << 14;
+const MAX_BITS: i64 = 1 << 14;
 
 /// The maximum number of bits of a number. Coefficients of polynomials of degree 40 have some thousands of bits.
-const MOST_DIGITS: usize = 1 << 16;
+const MAX_DIGITS: usize = 1 << 16;
 
 /// A polynomial. Its coefficients are these integers times a power of two, divided by a positive number.
 #[derive(Clone, Debug)]
@@ -71,7 +71,7 @@ impl Rational {
         let is_same = self.denominator == other.denominator;
         let scaled = |of: &Self, by: &IBig| {
             let up = of.exponent - exponent;
-            let up = (up <= MOST_BITS).then_some(up as usize)?;
+            let up = (up <= MAX_BITS).then_some(up as usize)?;
             let scaled = |number: &IBig| if is_same { number << up } else { (number << up) * by };
             Some(of.numerators.iter().map(scaled).collect::<Vec<_>>())
         };
@@ -96,13 +96,13 @@ impl Rational {
     /// Returns the polynomial, unless one of its numbers has too many bits.
     fn not_too_long(self) -> Option<Self> {
         let numbers = self.numerators.iter().chain([&self.denominator]);
-        let is_short = numbers.into_iter().all(|number| number.bit_len() <= MOST_DIGITS);
-        (is_short && self.exponent.abs() <= 4 * MOST_BITS).then_some(self)
+        let is_short = numbers.into_iter().all(|number| number.bit_len() <= MAX_DIGITS);
+        (is_short && self.exponent.abs() <= 4 * MAX_BITS).then_some(self)
     }
 
     fn times(&self, other: &Self) -> Option<Self> {
         let count = self.numerators.len() + other.numerators.len() - 1;
-        if count > MOST {
+        if count > MAX_COEFFICIENTS {
             return None;
         }
         let mut numerators = vec![IBig::ZERO; count];

@@ -5,7 +5,7 @@ use crate::noise;
 use crate::scalar::{Scalar, of_noise};
 
 /// The maximum number of cells along an axis that are examined one by one.
-const MOST_CELLS: f64 = 2.0;
+const MAX_CELLS: f64 = 2.0;
 
 /// Encloses the noise, or its derivative of these orders, at the points of a box.
 pub(crate) fn enclosed<F: Float>(at: [Interval<F>; 3], orders: [u8; 3]) -> Interval<F> {
@@ -16,7 +16,7 @@ pub(crate) fn enclosed<F: Float>(at: [Interval<F>; 3], orders: [u8; 3]) -> Inter
     };
     let [low, high] = [0, 1].map(|end| at.map(|along| along.bounds()[end].floor()));
     // The comparison is false for NaN, which may be anywhere.
-    let are_few = (0..3).all(|axis| high[axis] - low[axis] < MOST_CELLS);
+    let are_few = (0..3).all(|axis| high[axis] - low[axis] < MAX_CELLS);
     if !are_few {
         return anywhere;
     }

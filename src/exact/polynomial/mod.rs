@@ -19,7 +19,7 @@ pub const FEW: usize = 13;
 pub const SOME: usize = 22;
 
 /// The maximum number of coefficients, for degrees up to 40. A product of a higher degree is unknown.
-pub const MOST: usize = 41;
+pub const MAX_COEFFICIENTS: usize = 41;
 
 /// The factor that keeps a computed bound valid after up to eight rounded operations on positive numbers.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -191,7 +191,7 @@ impl<C: Coefficient, const N: usize> Polynomial<C, N> {
     }
 }
 
-/// Returns a bound of the sum of the absolute values of up to [`MOST`] rounded coefficients.
+/// Returns a bound of the sum of the absolute values of up to [`MAX_COEFFICIENTS`] rounded coefficients.
 fn norm<C: Coefficient>(of: &[C]) -> f64 {
     const ROUNDED_UP: f64 = 1.0 + 64.0 * f64::EPSILON;
     let mut sum = 0.0;

@@ -6,17 +6,17 @@
 
 use super::newton;
 use crate::dual::Dual;
-use crate::polynomial::{Coefficient, FEW, MOST, Polynomial};
+use crate::polynomial::{Coefficient, FEW, MAX_COEFFICIENTS, Polynomial};
 use crate::scalar::Scalar;
 
 /// Coefficients of at most this many times their error count as hidden by rounding.
 const HIDDEN: f64 = 2.0;
 
 /// The binomial coefficients "n over k", by n and then by k.
-pub(crate) static BINOMIALS: [[f64; MOST]; MOST] = {
-    let mut of = [[0.0; MOST]; MOST];
+pub(crate) static BINOMIALS: [[f64; MAX_COEFFICIENTS]; MAX_COEFFICIENTS] = {
+    let mut of = [[0.0; MAX_COEFFICIENTS]; MAX_COEFFICIENTS];
     let mut n = 0;
-    while n < MOST {
+    while n < MAX_COEFFICIENTS {
         of[n][0] = 1.0;
         let mut k = 1;
         while k <= n {

@@ -17,7 +17,7 @@ pub use function::FunctionOnLine;
 
 use crate::dual::Dual;
 use crate::interval::Interval;
-use crate::polynomial::{FEW, MOST, SOME};
+use crate::polynomial::{FEW, MAX_COEFFICIENTS, SOME};
 use crate::roots::range::{RayRange, Side};
 use crate::roots::{newton, stretch::Stretch};
 use crate::scalar::Scalar;
@@ -110,7 +110,7 @@ pub fn first_root_within(
     let root = match line.degree() {
         Some(degree) if degree < FEW => search.expand::<FEW>(start, end),
         Some(degree) if degree < SOME => search.expand::<SOME>(start, end),
-        Some(_) => search.expand::<MOST>(start, end),
+        Some(_) => search.expand::<MAX_COEFFICIENTS>(start, end),
         None if inner.start < inner.end || start == end => {
             let before = search.at_an_end(start, inner.start);
             let root = before.or_else(|| {

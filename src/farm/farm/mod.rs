@@ -147,7 +147,7 @@ impl Order {
         let words = words.into_iter().chain(given).chain(files);
         let matches = line().try_get_matches_from(words).unwrap_or_else(|error| error.exit());
         let args = matches.subcommand_matches("render").map(render::Args::from_arg_matches);
-        let Some(Ok(args)) = args else { return Err(Failure::Told) };
+        let Some(Ok(args)) = args else { return Err(Failure::AlreadyReported) };
         let is_film = args.check(registry)?;
         let last = match is_film {
             false => format!("merge {image}"),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 use tabray_core::glam::DVec3;
-use tabray_core::query::{ExactRay, Query};
+use tabray_core::query::{Query, QueryRay};
 use tabray_core::shapes::mesh::{Mesh, Surface};
 use tabray_core::world::accuracy::{Accuracy, Exact};
 use tabray_core::world::any_shape::AnyShape;
@@ -34,7 +34,7 @@ pub fn answer() -> Result<String, Box<dyn std::error::Error>> {
     let viewer = DVec3::new(0.5, 0.5, 3.0);
     let place = |index: u32, step: f64| 1.5 * (f64::from(index) * step).fract() - 0.25;
     let target = |index: u32| DVec3::new(place(index, 0.754_877_666), place(index, 0.569_840_291), 0.0);
-    let rays: Vec<_> = (1..=RAYS).filter_map(|index| ExactRay::new(viewer, target(index) - viewer)).collect();
+    let rays: Vec<_> = (1..=RAYS).filter_map(|index| QueryRay::new(viewer, target(index) - viewer)).collect();
     let hits = query.traced(&rays).iter().filter(|answer| answer.object.is_some()).count();
     let mut out = String::new();
     writeln!(out, "{hits} of {RAYS} rays hit the mesh")?;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 use tabray_core::glam::DVec3;
-use tabray_core::query::{ExactRay, Query, Verdict};
+use tabray_core::query::{Query, QueryRay, Verdict};
 use tabray_lang::{Registry, read};
 // Links the entity types, which register themselves.
 use tabray_plugins as _;
@@ -24,7 +24,7 @@ pub fn answer() -> Result<String, Box<dyn std::error::Error>> {
         [[-9.0, 0.0, 0.0, 3.0, 0.0, 0.0], [0.0, 0.0, 9.0, 1.0, 1.0, 0.0], [1.5, 0.0, 9.0, 0.0, 0.0, -1.0]]
             .iter()
             .filter_map(|[x, y, z, dx, dy, dz]| {
-                ExactRay::new(DVec3::new(*x, *y, *z), DVec3::new(*dx, *dy, *dz))
+                QueryRay::new(DVec3::new(*x, *y, *z), DVec3::new(*dx, *dy, *dz))
             })
             .collect();
     let mut out = String::new();

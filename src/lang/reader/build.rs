@@ -56,7 +56,7 @@ pub fn model(
             let [mut memory, mut other] = [vec![None; TOGETHER], vec![None; TOGETHER]];
             let mut count = parser.entities(&mut memory);
             while count > 0 {
-                parser.rounds.take_repeated().into_iter().for_each(|range| check.report.repeat(range));
+                parser.repeats.take_repeated().into_iter().for_each(|range| check.report.repeat(range));
                 let entities: Vec<_> = memory[..count].iter().flatten().collect();
                 let work = || {
                     let start = now();

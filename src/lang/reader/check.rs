@@ -56,7 +56,7 @@ impl<'a> Source<'_, 'a> {
         match self {
             Self::Text(text, parser) => {
                 let mut parsed = notes::again(registry, text, place.as_ref()?.start)?;
-                parser.rounds.sets.put(&mut parsed, registry, None);
+                parser.repeats.sets.put(&mut parsed, registry, None);
                 Some(Cow::Owned(parsed))
             }
             Self::Stream(_) => None,

@@ -4,8 +4,8 @@
 use super::fault::Severity;
 use super::guesses::Tables;
 use super::parsed::{Parsed, Word};
+use super::repeats::Repeats;
 use super::report::Report;
-use super::rounds::Rounds;
 use super::sources::Sources;
 use super::statement::Statement;
 use super::toml::{self, IndependentParts};
@@ -31,7 +31,7 @@ pub struct Lister<'a, 'r, 't> {
     sources: &'a Sources<'a>,
     parse: Parse<'r, 'a, 't>,
     report: &'r mut Report<'t>,
-    rounds: Rounds<'a>,
+    repeats: Repeats<'a>,
     tables: Tables,
     entities: Vec<Parsed<'a>>,
 }
@@ -46,11 +46,12 @@ pub fn entities<'a, 't>(
     let sets = sources.sets(report);
     let all = parse(sources.own.clone(), report);
     let names = all.iter().filter_map(Statement::number).collect();
-    let rounds = Rounds::of_names(names, sets);
+    let repeats = Repeats::of_names(names, sets);
     let entities = Vec::with_capacity(all.len());
-    let mut lister = Lister { registry, sources, parse, report, rounds, tables: Tables::default(), entities };
+    let mut lister =
+        Lister { registry, sources, parse, report, repeats, tables: Tables::default(), entities };
     lister.statements(all);
-    lister.rounds.sets.report_unmatched(lister.report);
+    lister.repeats.sets.report_unmatched(lister.report);
     lister.entities
 }
 
@@ -72,9 +73,9 @@ impl<'a, 'r, 't> Stream<'a, 'r, 't> {
         report: &'r mut Report<'t>,
         mut parts: IndependentParts,
     ) -> Self {
-        let rounds = Rounds::of_names(take(&mut parts.numbers), sources.sets(report));
+        let repeats = Repeats::of_names(take(&mut parts.numbers), sources.sets(report));
         let (tables, entities) = (Tables::default(), Vec::new());
-        let lister = Lister { registry, sources, parse, report, rounds, tables, entities };
+        let lister = Lister { registry, sources, parse, report, repeats, tables, entities };
         Self { lister, parts, parsed: 0 }
     }
 
@@ -88,7 +89,7 @@ impl<'a, 'r, 't> Stream<'a, 'r, 't> {
             *parsed += some.len();
             statements.into_iter().for_each(|statements| lister.statements(statements));
             if *parsed == ranges.len() {
-                lister.rounds.sets.report_unmatched(lister.report);
+                lister.repeats.sets.report_unmatched(lister.report);
             }
         }
         take(&mut lister.entities)
@@ -108,14 +109,14 @@ impl<'a> Lister<'a, '_, '_> {
 
     fn entity(&mut self, mut entity: Parsed<'a>) {
         let table = self.tables.named(self.registry, &entity.kind.text).map(|table| &self.tables[table]);
-        self.rounds.entity(&mut entity, table, self.registry, self.report);
+        self.repeats.entity(&mut entity, table, self.registry, self.report);
         self.entities.push(entity);
     }
 
     fn statement(&mut self, statement: &Statement<'a>) {
         match statement {
             Statement::Entity(entity) => self.entity(entity.clone()),
-            Statement::Let { name, value } => self.rounds.define(name, value, self.report),
+            Statement::Let { name, value } => self.repeats.define(name, value, self.report),
             Statement::Include { file } => self.include(file),
             Statement::Repeat { name, count, body, .. } => self.repeat(name, count, body),
         }
@@ -139,14 +140,14 @@ impl<'a> Lister<'a, '_, '_> {
         }
         let length = WEIGHT * body.iter().map(Statement::len).sum::<usize>();
         let errors = self.report.count(Severity::Error);
-        let mut is_more = self.rounds.begin(name, count, (0, names), errors, self.report);
+        let mut is_more = self.repeats.begin(name, count, (0, names), errors, self.report);
         if !is_more {
-            self.rounds.end();
+            self.repeats.end();
         }
         while is_more {
             body.iter().for_each(|statement| self.statement(statement));
             let errors = self.report.count(Severity::Error);
-            is_more = self.rounds.next(length, errors, self.report).is_some();
+            is_more = self.repeats.next(length, errors, self.report).is_some();
         }
     }
 }

@@ -25,7 +25,7 @@ use toml::de::{DeTable, DeValue};
 const LARGEST: u64 = 1 << 30;
 
 /// The maximum number of files that a scene includes, and their maximum nesting.
-const MOST_FILES: usize = 1000;
+const MAX_FILES: usize = 1000;
 const DEEPEST: usize = 16;
 
 /// The texts of a scene.
@@ -215,9 +215,8 @@ fn may_include(readings: &[OpenSource], includer: usize, file: &str, path: &Path
         outer = reading.includer;
         depth += 1;
     }
-    if depth > DEEPEST || readings.len() > MOST_FILES {
-        let help =
-            format!("a scene includes at most {MOST_FILES} files, at most {DEEPEST} within each other");
+    if depth > DEEPEST || readings.len() > MAX_FILES {
+        let help = format!("a scene includes at most {MAX_FILES} files, at most {DEEPEST} within each other");
         return Err((format!("`{file}` is one file too many"), Some(help)));
     }
     Ok(())

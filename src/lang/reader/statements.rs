@@ -4,8 +4,8 @@ use super::fault::{Fault, Severity};
 use super::keyword::Keyword;
 use super::notes::{Grammar, Node, Statement};
 use super::parsed::{Parsed, Word};
+use super::repeats::Repeats;
 use super::report::Report;
-use super::rounds::Rounds;
 use super::sources::Sources;
 use super::tokens::{Token, TokenForm, Tokens};
 use crate::registry::Registry;
@@ -44,17 +44,17 @@ pub fn parser<'a, 'r>(
         );
         return None;
     }
-    let rounds = Rounds::of(text, sources.sets(report));
+    let repeats = Repeats::of(text, sources.sets(report));
     let grammar = Grammar::new(registry, text, 0, report);
-    Some(Parser { grammar, sources, rounds, outer: Vec::new(), is_over: false, stops: true })
+    Some(Parser { grammar, sources, repeats, outer: Vec::new(), is_over: false, stops: true })
 }
 
 /// The reader of a scene in the notes' syntax.
 pub struct Parser<'a, 'r> {
     grammar: Grammar<'a, 'r>,
     sources: &'a Sources<'a>,
-    /// The rounds of the scene, and its numbers.
-    pub rounds: Rounds<'a>,
+    /// The `repeat`s of the scene, and its numbers.
+    pub repeats: Repeats<'a>,
     /// The rests of the texts that include this one.
     outer: Vec<Tokens<'a>>,
     /// Whether everything has been read.
@@ -81,19 +81,19 @@ impl<'a> Parser<'a, '_> {
             if self.stops && self.grammar.report.is_fatal() {
                 return 0;
             }
-            if self.rounds.is_plain() {
+            if self.repeats.is_plain() {
                 let same = self.grammar.same_words(&mut parsed[count..]);
                 if same > 0 {
                     count += same;
                     continue;
                 }
             }
-            match self.grammar.next(self.rounds.is_open(), &mut parsed[count]) {
+            match self.grammar.next(self.repeats.is_open(), &mut parsed[count]) {
                 Some(Node::Entity) => {
                     let grammar = &mut self.grammar;
                     if let Some(entity) = &mut parsed[count] {
                         let table = grammar.table.map(|table| &grammar.tables[table]);
-                        self.rounds.entity(entity, table, grammar.registry, grammar.report);
+                        self.repeats.entity(entity, table, grammar.registry, grammar.report);
                         count += 1;
                     }
                 }
@@ -110,7 +110,7 @@ impl<'a> Parser<'a, '_> {
         match (statement.keyword, statement.words, statement.open) {
             (Keyword::Include, [Some(file), _], _) => self.include(&file),
             (Keyword::Let, [Some(name), Some(value)], _) => {
-                self.rounds.define(&name, &value, self.grammar.report);
+                self.repeats.define(&name, &value, self.grammar.report);
             }
             (Keyword::Repeat, [Some(name), Some(count)], Some(open)) => self.repeat(&name, &count, open),
             // Incomplete statements have been reported.
@@ -129,12 +129,12 @@ impl<'a> Parser<'a, '_> {
 
     /// Continues after the end of an included file. Returns whether there is more to read.
     fn leave(&mut self) -> bool {
-        while self.rounds.is_open() {
+        while self.repeats.is_open() {
             self.grammar.report.add(
-                Fault::error(self.rounds.innermost(), "missing `}` for this `repeat`")
+                Fault::error(self.repeats.innermost(), "missing `}` for this `repeat`")
                     .help(Keyword::Repeat.usage()),
             );
-            self.rounds.end();
+            self.repeats.end();
         }
         while let Some(outer) = self.outer.pop() {
             self.grammar.tokens = outer;
@@ -143,7 +143,7 @@ impl<'a> Parser<'a, '_> {
             }
         }
         if !replace(&mut self.is_over, true) {
-            self.rounds.sets.report_unmatched(self.grammar.report);
+            self.repeats.sets.report_unmatched(self.grammar.report);
         }
         false
     }
@@ -153,8 +153,8 @@ impl<'a> Parser<'a, '_> {
         let grammar = &mut self.grammar;
         let (entities, close) = body(grammar.tokens.text, open.end);
         let errors = grammar.report.count(Severity::Error);
-        if !self.rounds.begin(name, count, (open.end, entities), errors, grammar.report) {
-            self.rounds.end();
+        if !self.repeats.begin(name, count, (open.end, entities), errors, grammar.report) {
+            self.repeats.end();
             grammar.go_to(close);
         }
     }
@@ -163,7 +163,7 @@ impl<'a> Parser<'a, '_> {
     fn end_of_round(&mut self, close: Token) {
         let grammar = &mut self.grammar;
         let errors = grammar.report.count(Severity::Error);
-        if let Some(start) = self.rounds.next(close.start, errors, grammar.report) {
+        if let Some(start) = self.repeats.next(close.start, errors, grammar.report) {
             grammar.go_to(start);
         }
     }

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 use tabray_core::geometry::ray::{MISS, Side};
-use tabray_core::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
+use tabray_core::geometry::ray_packet::{HitRecordMut, PACKET_SIZE, RayPacket};
 use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::tiles::{self, TILE};
@@ -65,9 +65,9 @@ impl Hits {
         doubt: [0; PACKET_SIZE],
     };
 
-    fn nearest(&mut self) -> Nearest<'_> {
+    fn nearest(&mut self) -> HitRecordMut<'_> {
         let Self { near, far, hit_ids, doubt } = self;
-        Nearest { near, far, hit_ids, doubt }
+        HitRecordMut { near, far, hit_ids, doubt }
     }
 }
 

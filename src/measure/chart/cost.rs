@@ -27,7 +27,7 @@ const DEVIATIONS: f64 = 3.0;
 /// The sufficient relative error of counted rays, and the maximum number of packets and CPU time in seconds for
 /// counting.
 const COUNTED: f64 = 0.1;
-const MOST_COUNTED: usize = 128;
+const MAX_COUNTED: usize = 128;
 const COUNTING: f64 = 0.1;
 
 /// The number of pixels whose rays are counted one by one, and the number between two checks of the time.
@@ -260,7 +260,7 @@ impl Counted {
             }
             let seconds: f64 = packets.iter().map(|packet| packet.seconds).sum();
             let error = ratio_error(&packets, Packet::all, Packet::primary);
-            if DEVIATIONS * error <= COUNTED || seconds > COUNTING || packets.len() >= MOST_COUNTED {
+            if DEVIATIONS * error <= COUNTED || seconds > COUNTING || packets.len() >= MAX_COUNTED {
                 let [all, primary] =
                     [Packet::all, Packet::primary].map(|of| packets.iter().map(of).sum::<f64>());
                 return Some(Self { each: all / primary, error, pixels });

@@ -70,7 +70,6 @@ struct Document<'c> {
     panels: Vec<Compared<'c>>,
     /// The processor, the level of CPU instructions that is used, and the number of its threads.
     processor: &'c str,
-    /// The name of the scene.
     scene: &'c str,
     /// The time that rounds waited for other work of the machine, as a fraction of the time that they took: the median
     /// over all choices.
@@ -88,7 +87,6 @@ struct Compared<'c> {
     note: &'c str,
     /// The choices.
     points: Vec<Measured<'c>>,
-    /// The title.
     title: &'c str,
 }
 
@@ -118,7 +116,6 @@ struct Measured<'c> {
     missed: usize,
     /// The number of pixels that were compared.
     pixels: Option<usize>,
-    /// The number of rounds.
     rounds: usize,
     /// The number of samples per pixel.
     samples: u32,

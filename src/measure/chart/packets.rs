@@ -1,7 +1,7 @@
 //! Packets of rays, and their first hits on an object, found as a render finds them.
 
 use tabray_core::geometry::ray::{MISS, Ray};
-use tabray_core::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
+use tabray_core::geometry::ray_packet::{HitRecordMut, PACKET_SIZE, RayPacket};
 use tabray_core::geometry::sight::Sight;
 use tabray_core::render::trace;
 use tabray_core::simd::cpu::Cpu;
@@ -65,7 +65,8 @@ impl Packet {
         let exactly = |lane: usize| trace::primary_distance(shape, rays.get(lane), &self.sights[lane]);
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let (mut hit_ids, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
-        let nearest = Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
+        let nearest =
+            HitRecordMut { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
         if shape.closest_hits(cpu, rays, 1, nearest) {
             for lane in (0..len).filter(|lane| doubt[*lane] != 0) {
                 near[lane] = exactly(lane);

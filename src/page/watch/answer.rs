@@ -289,7 +289,7 @@ fn plan(frame: Arc<Frame>) -> Option<Job> {
 
 /// Measures the chart of the scene, in this many seconds.
 fn charted(registry: &'static Registry, frame: Arc<Frame>, seconds: &str) -> Option<Job> {
-    let seconds = seconds.parse().ok().filter(|seconds| (1..=chart::MOST_SECONDS).contains(seconds))?;
+    let seconds = seconds.parse().ok().filter(|seconds| (1..=chart::MAX_SECONDS).contains(seconds))?;
     Some(Box::new(move |client| {
         let limit = Duration::from_secs(seconds);
         let chart = chart::measure(registry, &frame, limit, || check(&frame, client))?;

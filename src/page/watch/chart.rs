@@ -18,7 +18,7 @@ use tabray_measure::chart::{self, Chart, Panel, Progress};
 use tabray_measure::measuring::Time;
 
 /// The longest time that a page may give a chart, in seconds.
-pub const MOST_SECONDS: u64 = 3600;
+pub const MAX_SECONDS: u64 = 3600;
 
 /// The time between two checks whether the chart is still wanted.
 const LOOK: Duration = Duration::from_millis(50);

@@ -35,7 +35,6 @@ struct Scene<'s> {
     name: &'s str,
     /// The width and the height of the image in pixels.
     size: [usize; 2],
-    /// The text of the scene.
     text: &'s str,
     /// The version of the scene, from 1.
     version: u64,
@@ -62,7 +61,6 @@ pub fn done(frame: &Frame, took: Duration) -> Bytes {
 struct ImageDone {
     /// The time for the image, in seconds.
     seconds: f64,
-    /// The version of the scene.
     version: u64,
 }
 

@@ -17,7 +17,7 @@ use tabray_core::text;
 /// nearest one above it is watched.
 ///
 /// The system does not tell of every change: not of those on other machines, nor of a mount. So whoever has files watched
-/// [looks](Self::look) at them once in a while.
+/// [looks](Self::poll) at them once in a while.
 pub struct Files {
     watcher: notify::Result<RecommendedWatcher>,
     filter: Arc<Mutex<WatchFilter>>,
@@ -116,8 +116,8 @@ impl Files {
     }
 
     /// Looks at all files and folders, watches new ones, and tells whether one has changed since
-    /// the last look.
-    pub fn look(&mut self) -> bool {
+    /// the last call.
+    pub fn poll(&mut self) -> bool {
         let mut is_other = false;
         for (path, known) in &mut self.stamps {
             let now = stamp(path);
@@ -243,10 +243,10 @@ mod tests {
             files.refused(),
             Some("cannot watch files: the system watches as many files as it allows")
         );
-        assert!(!files.look(), "it is not there yet");
+        assert!(!files.poll(), "it is not there yet");
         fs::create_dir(&inner).expect("a folder");
         fs::write(&scene, "1").expect("a file");
-        assert!(files.look() && !files.look());
+        assert!(files.poll() && !files.poll());
         // A file of the same length and time.
         let modified = fs::metadata(&scene).and_then(|meta| meta.modified()).expect("a time");
         fs::write(&other, "2").expect("a file");
@@ -256,9 +256,9 @@ mod tests {
             .and_then(|file| file.set_modified(modified))
             .expect("a time");
         fs::rename(&other, &scene).expect("in its place");
-        assert!(!cfg!(unix) || files.look());
+        assert!(!cfg!(unix) || files.poll());
         fs::remove_dir_all(&inner).expect("it was there");
-        assert!(files.look() && !files.look());
+        assert!(files.poll() && !files.poll());
     }
 
     #[test]
@@ -270,11 +270,11 @@ mod tests {
         files.watch(0, [&folder.path().join("a/b/scene.ray")]);
         assert_eq!(armed(&files), std::slice::from_ref(&at));
         fs::create_dir_all(at.join("a/b")).expect("folders");
-        files.look();
+        files.poll();
         assert_eq!(armed(&files), [at.join("a/b")]);
         fs::rename(at.join("a"), at.join("c")).expect("another name");
         fs::create_dir(at.join("a")).expect("a folder");
-        files.look();
+        files.poll();
         assert_eq!(armed(&files), [at.join("a")]);
     }
 }

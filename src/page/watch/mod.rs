@@ -134,7 +134,7 @@ fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
     let (mut watched, mut told) = (Vec::new(), None);
     loop {
         // The stamps of the files are taken before the files are read, so that a change in the meantime is noticed.
-        files.look();
+        files.poll();
         let refused =
             files.refused().map(|reason| format!("{reason}; its files are looked at once a second"));
         if refused.is_some() && refused != told {
@@ -176,7 +176,7 @@ fn next(events: &Receiver<Event>, files: &mut Files) -> Event {
     let mut last = loop {
         match events.recv_timeout(LOOK) {
             Ok(event) => break event,
-            Err(RecvTimeoutError::Timeout) if files.look() => break Event::Changed,
+            Err(RecvTimeoutError::Timeout) if files.poll() => break Event::Changed,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break Event::Interrupted,
         }

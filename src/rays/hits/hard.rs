@@ -13,7 +13,7 @@ use serde_json::json;
 use std::io::{self, Write};
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::output;
-use tabray_core::query::{ExactRay, Query};
+use tabray_core::query::{Query, QueryRay};
 use tabray_core::render::Renderer;
 
 /// The target of a ray.
@@ -196,10 +196,10 @@ impl Search {
 
     /// Returns the hits of the rays through some points.
     fn labels(&self, query: &Query, points: &[DVec3]) -> Vec<Label> {
-        let ray = |at: &DVec3| ExactRay::new(self.origin, *at - self.origin);
+        let ray = |at: &DVec3| QueryRay::new(self.origin, *at - self.origin);
         let rays: Option<Vec<_>> = points.iter().map(ray).collect();
         let Some(rays) = rays else { return vec![None; points.len()] };
-        let label = |(ray, answer): (&ExactRay, _)| {
+        let label = |(ray, answer): (&QueryRay, _)| {
             let surface = query.surroundings(ray, &answer)?;
             Some((answer.object?, surface.face))
         };
@@ -248,7 +248,7 @@ impl Search {
 
     /// Returns the kind of the place between two rays.
     fn between(&self, query: &Query) -> Place {
-        let ray = |at: DVec3| ExactRay::new(self.origin, at - self.origin);
+        let ray = |at: DVec3| QueryRay::new(self.origin, at - self.origin);
         let rays: Vec<_> = self.ends.iter().filter_map(|(at, _)| ray(*at)).collect();
         let answers = query.traced(&rays);
         let [one, other] = &answers[..] else { return Place::Outline };

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use rays::{BadRay, RayReader, RayRow};
 use std::io::{self, Write};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
-use tabray_core::query::{Crossing, ExactRay, Query};
+use tabray_core::query::{Crossing, Query, QueryRay};
 use tabray_core::render::Renderer;
 
 /// The number of rays that are answered before any answer is written: enough for all threads, and little memory.
@@ -58,7 +58,7 @@ pub enum Ended {
 }
 
 /// A ray of a query, with the t of its end.
-type Ray = (ExactRay, f64);
+type Ray = (QueryRay, f64);
 
 /// Answers all rays of a reader, in their order. The answers depend on the rays alone, not on the threads. `step`
 /// gets the number of rays that are done.

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::fmt;
 use std::io::{BufRead, BufReader, Read};
 use tabray_core::output;
-use tabray_core::query::ExactRay;
+use tabray_core::query::QueryRay;
 use tabray_core::text::reason;
 
 /// The maximum length of a line, in bytes: more than any six numbers have.
@@ -29,7 +29,7 @@ pub enum RayFormat {
 #[derive(Clone, Debug)]
 pub struct RayRow {
     /// The ray.
-    pub ray: ExactRay,
+    pub ray: QueryRay,
     /// The end, in lengths of its direction.
     pub t_max: Option<f64>,
 }
@@ -295,7 +295,7 @@ pub(super) fn of_numbers([a, b, c, d, e, f]: [f64; 6], t_max: Option<f64>) -> Re
     if t_max.is_some_and(|end| end.is_nan() || end <= 0.0) {
         return Err("a ray ends at a positive t".to_owned());
     }
-    let ray = ExactRay::new(origin, dir);
+    let ray = QueryRay::new(origin, dir);
     let why = if dir == DVec3::ZERO { "its direction is 0" } else { "its numbers are not all finite" };
     ray.map(|ray| RayRow { ray, t_max }).ok_or_else(|| why.to_owned())
 }

@@ -27,17 +27,17 @@ use glam::DVec3;
 use triangles::Triangles;
 
 /// The least number of times that the cube is halved: a body is not missed between corners far apart.
-const FEWEST: u32 = 4;
+const MIN_HALVINGS: u32 = 4;
 
 /// The largest number of times: numbers of the files have 24 bits.
-const MOST: u32 = 16;
+const MAX_HALVINGS: u32 = 16;
 
 /// The number of halvings after which the work is estimated, which takes no noticeable time.
 const PILOT: u32 = 5;
 
 /// The maximum number of cells that the surface may cross, and the approximate number of bytes that each takes with
 /// its triangles.
-const MOST_CELLS: usize = 1 << 22;
+const MAX_CELLS: usize = 1 << 22;
 const CELL: u64 = 400;
 
 /// The reason why there is no mesh.
@@ -82,18 +82,18 @@ pub fn mesh(
     memory: Option<u64>,
     tell: &(dyn Fn(Event) + Sync),
 ) -> Result<SurfaceMesh, NoMesh> {
-    let most = memory.map_or(MOST_CELLS, |bytes| MOST_CELLS.min((bytes / CELL) as usize));
+    let most = memory.map_or(MAX_CELLS, |bytes| MAX_CELLS.min((bytes / CELL) as usize));
     let mut cells = Cells::enclosing(body);
     let last = cells.halvings_to(error);
-    if last > MOST {
+    if last > MAX_HALVINGS {
         return Err(NoMesh::TooFine);
     }
-    let last = last.max(FEWEST);
+    let last = last.max(MIN_HALVINGS);
     let done = |steps: usize| tell(Event::Done(steps));
     loop {
         cells.halve(body, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
         let now = cells.halvings();
-        if now < FEWEST {
+        if now < MIN_HALVINGS {
             continue;
         }
         if cells.list.is_empty() {

@@ -19,7 +19,7 @@ pub(super) fn crossings<N: Number>(law: Law, surface: &HitPoints<N>, dir: [N; 3]
     let (n, one) = (N::constant, N::constant(1.0));
     let cosine = -dot(dir, surface.normal);
     // Bent normals may face away from the rays; the tracer then turns them.
-    if surface.unbent.is_some() && cosine.range().low <= N::of(0.0) {
+    if surface.geometric_normal.is_some() && cosine.range().low <= N::of(0.0) {
         return None;
     }
     let cosine = cosine.max(n(0.0)).min(one);
@@ -49,10 +49,14 @@ pub(super) fn crossings<N: Number>(law: Law, surface: &HitPoints<N>, dir: [N; 3]
             let onward = per_axis(|axis| ratio * dir[axis] + bend * surface.normal[axis]);
             // Bent normals may lead a ray back to the side from which it comes. Then the surface's own normals replace
             // them.
-            if let Some(unbent) = surface.unbent {
-                let through = dot(onward, unbent).range();
+            if let Some(geometric_normal) = surface.geometric_normal {
+                let through = dot(onward, geometric_normal).range();
                 if through.low >= N::of(0.0) {
-                    return crossings(law, &HitPoints { normal: unbent, unbent: None, ..*surface }, dir);
+                    return crossings(
+                        law,
+                        &HitPoints { normal: geometric_normal, geometric_normal: None, ..*surface },
+                        dir,
+                    );
                 }
                 if through.high >= N::of(0.0) {
                     return None;

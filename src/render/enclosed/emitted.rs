@@ -19,7 +19,7 @@ use tabray_world::geometry::sight::Line;
 /// A sample is enclosed by the contribution of its point, and the mean over a panel, a ball or a cone by the
 /// contributions of all points. Where these are open, and for the mean over a sky, the light lies between nothing and
 /// its greatest possible value.
-pub(super) fn shine<N: Number>(
+pub(super) fn contribution<N: Number>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
     emitter: &dyn Emitter,
@@ -103,8 +103,10 @@ impl<N: Number> Shining<'_, N> {
         let Points { toward, are_far, light } = points;
         let rise = dot(*toward, self.surface.normal);
         // Light from behind the surface may face only the shading normals.
-        let unbent = self.surface.unbent;
-        let above = unbent.map_or(rise, |unbent| rise.min(dot(*toward, unbent))).range();
+        let geometric_normal = self.surface.geometric_normal;
+        let above = geometric_normal
+            .map_or(rise, |geometric_normal| rise.min(dot(*toward, geometric_normal)))
+            .range();
         if above.high <= N::of(0.0) {
             return Some([N::constant(0.0); 3]);
         }
@@ -124,7 +126,9 @@ impl<N: Number> Shining<'_, N> {
         let (n, surface) = (N::constant, self.surface);
         // How far its middle is above the horizon.
         let rise = dot(round.middle, surface.normal);
-        let above = surface.unbent.map_or(rise, |unbent| rise.min(dot(round.middle, unbent)));
+        let above = surface
+            .geometric_normal
+            .map_or(rise, |geometric_normal| rise.min(dot(round.middle, geometric_normal)));
         if (above + round.radius).range().high <= N::of(0.0) {
             return Some([n(0.0); 3]);
         }

@@ -30,6 +30,10 @@ impl<N: Number> HitPoints<N> {
         let z = z.max(zero);
         let facet = unit(per_axis(|axis| width * x * across[axis] + width * y * up[axis] + z * normal[axis]));
         let is_known = facet.iter().all(|along| along.range().is_bounded());
-        is_known.then(|| Self { normal: facet, unbent: Some(self.unbent.unwrap_or(normal)), ..*self })
+        is_known.then(|| Self {
+            normal: facet,
+            geometric_normal: Some(self.geometric_normal.unwrap_or(normal)),
+            ..*self
+        })
     }
 }

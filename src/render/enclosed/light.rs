@@ -27,7 +27,7 @@ pub enum LightPoints {
 
 /// Encloses the contribution of the light of this index to the colour of points; `None` where it is open. `dir` is
 /// the unit vector along the rays that see the points.
-pub(super) fn shine<N: Number>(
+pub(super) fn contribution<N: Number>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
     surface: &HitPoints<N>,
@@ -44,7 +44,10 @@ pub(super) fn shine<N: Number>(
     let distance = dot(toward, toward).sqrt();
     let cosine = dot(toward, surface.normal) / distance;
     // Light from behind the surface may face only the shading normals.
-    let above = surface.unbent.map_or(cosine, |unbent| cosine.min(dot(toward, unbent))).range();
+    let above = surface
+        .geometric_normal
+        .map_or(cosine, |geometric_normal| cosine.min(dot(toward, geometric_normal)))
+        .range();
     if above.high <= zero {
         return Some(black);
     }

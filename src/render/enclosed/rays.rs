@@ -118,7 +118,7 @@ impl<'s> EnclosingTracer<'s> {
         self.is_spent |= is_spent;
         if is_hopeless || is_spent || places.len() > self.limits.places || left.low < N::of(0.0) {
             let bounds = places.iter().map(|(hit, place)| self.bound_at(ray, hit, *place));
-            let most = bounds.fold(self.behind(), f64::max);
+            let most = bounds.fold(self.brightest_background(), f64::max);
             return self.open(ray, most);
         }
         self.hits += places.len();
@@ -248,8 +248,8 @@ impl<'s> EnclosingTracer<'s> {
         for index in self.scene.lights {
             let seen = (*index, self.lights);
             let added = match self.scene.model.lights[*index].value.emitter() {
-                None => light::shine(self.scene, seen, surface, toward)?,
-                Some(emitter) => emitted::shine(self.scene, seen, emitter, surface, toward)?,
+                None => light::contribution(self.scene, seen, surface, toward)?,
+                Some(emitter) => emitted::contribution(self.scene, seen, emitter, surface, toward)?,
             };
             colour = per_axis(|channel| colour[channel] + added[channel]);
         }
@@ -301,18 +301,18 @@ impl<'s> EnclosingTracer<'s> {
     /// [`Rules::over_path`] takes it.
     fn over_path<N: Number>(&self, ray: &Ray<N>, t: f64, most: f64) -> f64 {
         if most == 0.0 {
-            return self.behind();
+            return self.brightest_background();
         }
         if self.rules() == Rules::Free {
-            return most.max(self.behind());
+            return most.max(self.brightest_background());
         }
         let path = Interval::point(t) * ray.length.coarse() + ray.travelled.coarse();
         let bound = (Interval::point(most) / Interval { low: path.low.max(0.0), high: path.high }).high;
-        if bound.is_nan() { f64::INFINITY } else { bound.max(self.behind()) }
+        if bound.is_nan() { f64::INFINITY } else { bound.max(self.brightest_background()) }
     }
 
     /// Bounds the light of the background.
-    fn behind(&self) -> f64 {
+    fn brightest_background(&self) -> f64 {
         let background = self.scene.model.background.as_ref();
         background.map_or(0.0, |background| background.value.brightest().max_element())
     }

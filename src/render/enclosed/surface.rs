@@ -7,7 +7,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
 use tabray_world::certify::Precise;
 use tabray_world::geometry::sight::Line;
-use tabray_world::patch::{LEAST_COSINE, MEAN_ROUNDING, PatchBounds, Window};
+use tabray_world::patch::{MEAN_ROUNDING, MIN_COSINE, PatchBounds, Window};
 use tabray_world::rules;
 use tabray_world::scene::model::Object;
 use tabray_world::surface_point::PointBounds;
@@ -28,7 +28,7 @@ pub(super) struct HitPoints<N> {
     /// Whether the normals are turned inward.
     pub is_inside: bool,
     /// The unit normals of the surface itself, turned likewise, where the points are shaded with others.
-    pub unbent: Option<[N; 3]>,
+    pub geometric_normal: Option<[N; 3]>,
     pub ambient: Colour<N>,
     pub diffuse: Colour<N>,
     pub specular: Colour<N>,
@@ -67,7 +67,7 @@ impl<N: Number> HitPoints<N> {
             let dir = per_axis(|axis| line.dir[axis] / length_of_dir);
             let cosine = dot(outward, dir).abs().coarse().low;
             SeenPatch {
-                reach: (1.0 + 1e-9) * width.coarse().high / cosine.max(LEAST_COSINE),
+                reach: (1.0 + 1e-9) * width.coarse().high / cosine.max(MIN_COSINE),
                 bounds: PatchBounds::seen(ranges(at), ranges(dir), ranges(outward), width.range()),
             }
         });
@@ -123,7 +123,7 @@ impl<N: Number> HitPoints<N> {
         } else {
             normal
         };
-        let unbent = (normal != own).then_some(own);
+        let geometric_normal = (normal != own).then_some(own);
         let rounding = |of: Interval<N::End>| {
             let error = if patch.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
             of + Interval { low: N::of(-error), high: N::of(error) }
@@ -135,7 +135,7 @@ impl<N: Number> HitPoints<N> {
             at,
             normal,
             is_inside: is_turned,
-            unbent,
+            geometric_normal,
             ambient,
             diffuse,
             specular: enclosing(look.specular),
@@ -145,11 +145,11 @@ impl<N: Number> HitPoints<N> {
     /// Returns the mirrored directions of rays along `dir`, with the same length; `None` where they are open.
     pub fn mirrored(&self, dir: [N; 3]) -> Option<[N; 3]> {
         let mirrored = rules::mirrored(dir, self.normal);
-        let Some(unbent) = self.unbent else { return Some(mirrored) };
+        let Some(geometric_normal) = self.geometric_normal else { return Some(mirrored) };
         // A direction that bent normals mirror through the surface is turned back.
-        let through = (dot(mirrored, unbent) * dot(dir, unbent)).range();
+        let through = (dot(mirrored, geometric_normal) * dot(dir, geometric_normal)).range();
         if through.low > N::of(0.0) {
-            Some(rules::mirrored(mirrored, unbent))
+            Some(rules::mirrored(mirrored, geometric_normal))
         } else {
             (through.high <= N::of(0.0)).then_some(mirrored)
         }

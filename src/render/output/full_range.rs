@@ -15,7 +15,7 @@ pub enum FullRange {
 }
 
 /// The maximum number of pixels of an image that is read.
-const MOST_PIXELS: u64 = 1 << 28;
+const MAX_PIXELS: u64 = 1 << 28;
 
 impl FullRange {
     /// Returns the format that a file's extension names, in upper or lower case.
@@ -76,7 +76,7 @@ pub fn read_pfm(mut file: impl BufRead) -> io::Result<Rgb32FImage> {
         [width.parse().map_err(|_| wrong())?, height.parse().map_err(|_| wrong())?];
     let scale: f32 = line()?.parse().map_err(|_| wrong())?;
     let count = u64::from(width) * u64::from(height);
-    if count == 0 || count > MOST_PIXELS || scale == 0.0 || !scale.is_finite() {
+    if count == 0 || count > MAX_PIXELS || scale == 0.0 || !scale.is_finite() {
         return Err(wrong());
     }
     let mut bytes = Vec::new();

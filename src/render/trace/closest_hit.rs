@@ -12,7 +12,7 @@ use std::mem::take;
 use std::ops::Range;
 use tabray_world::geometry::bvh::{self, PacketVisitor, Stack};
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayError, Side};
-use tabray_world::geometry::ray_packet::{Nearest, RayPacket};
+use tabray_world::geometry::ray_packet::{HitRecordMut, RayPacket};
 use tabray_world::simd::cpu::kernels;
 use tabray_world::simd::soa::{LANES, Vectors};
 
@@ -335,7 +335,8 @@ impl<W: TraceObserver> PacketVisitor for ClosestHitSearch<'_, '_, '_, W> {
         let hits = &mut *self.hits;
         let (mut near, mut far) = ([hits.near[lane]; LANES], [hits.far[lane]; LANES]);
         let (mut hit_ids, mut doubt) = ([hits.hit_ids[lane]; LANES], [0; LANES]);
-        let nearest = Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
+        let nearest =
+            HitRecordMut { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
         let sides = side.map(|side| [side; LANES]);
         let rays = single.rays(group).leaving(sides.as_ref().map(|sides| &sides[..]));
         let is_open = shape.closest_hits(self.tracer.cpu, rays, id, nearest);

@@ -10,7 +10,7 @@ use std::mem::take;
 use tabray_exact::interval::{Float, Interval, Wide};
 use tabray_world::any_shape::AnyShape;
 use tabray_world::certify::{self, Doubt, Enclosure, Precision};
-use tabray_world::coincidence::{CLOSE, LEAST_COSINE, SAME, close};
+use tabray_world::coincidence::{CLOSE, MIN_COSINE, SAME, close};
 use tabray_world::geometry::aabb::larger;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use tabray_world::geometry::sight::Sight;
@@ -171,7 +171,7 @@ fn divergence(ray: &Ray, (one, distance): (&AnyShape, f64), other: &AnyShape) ->
     let normals = [one, other].map(|shape| shape.normal(ray.at(distance)));
     let [cosine, other_cosine] = normals.map(|normal| ray.dir.dot(normal));
     let per_shift = (normals[0] / cosine - normals[1] / other_cosine).length();
-    Divergence { per_shift, cosine: larger(cosine.abs().min(other_cosine.abs()), LEAST_COSINE) }
+    Divergence { per_shift, cosine: larger(cosine.abs().min(other_cosine.abs()), MIN_COSINE) }
 }
 
 /// Returns how far the rounding of its direction shifts a ray sideways at a distance: two ulps in each of three

@@ -11,7 +11,7 @@ use std::mem::swap;
 use std::ops::Range;
 use std::slice;
 use tabray_world::geometry::ray::{MISS, Ray, Side};
-use tabray_world::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
+use tabray_world::geometry::ray_packet::{HitRecordMut, PACKET_SIZE, RayPacket};
 use tabray_world::geometry::sight::Sight;
 use tabray_world::sensor::Sensor;
 use tabray_world::simd::cpu::{Cpu, kernels};
@@ -111,9 +111,9 @@ impl RayGroup {
         let lens = lens.each_ref().map(|each| if each.is_empty() { &[][..] } else { &each[..count] });
         let places = camera.places_of(places.each_ref().map(|each| &each[..count]), lens);
         if self.is_from_one {
-            camera.camera.look(cpu, &places, self.dir.resized(count));
+            camera.camera.fill_directions(cpu, &places, self.dir.resized(count));
         } else {
-            camera.camera.look_from(cpu, &places, self.origin.resized(count), self.dir.resized(count));
+            camera.camera.fill_rays(cpu, &places, self.origin.resized(count), self.dir.resized(count));
         }
         self.looks = true;
     }
@@ -385,8 +385,8 @@ impl HitRecord {
     }
 
     /// Borrows the hits of some of the rays.
-    pub fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
-        Nearest {
+    pub fn part(&mut self, range: Range<usize>) -> HitRecordMut<'_> {
+        HitRecordMut {
             near: &mut self.near[range.clone()],
             far: &mut self.far[range.clone()],
             hit_ids: &mut self.hit_ids[range.clone()],

@@ -17,7 +17,7 @@
 //! an allowance of its own, fixed by its path, and is followed as soon as it is met, so the course's pictures do not
 //! change.
 
-use crate::limits::{LEAST_PART, MAX_RAYS, MAX_TREE};
+use crate::limits::{MAX_RAYS, MAX_TREE, MIN_PART};
 use crate::observer::{DropReason, RayKind};
 use crate::plan::depth::{Depth, LightRange};
 use glam::DVec3;
@@ -171,7 +171,7 @@ pub(super) struct Ends {
 
 impl Ends {
     pub fn of(camera: &Sensor) -> Self {
-        let (display, parts) = (camera.display(), camera.samples.min(LEAST_PART));
+        let (display, parts) = (camera.display(), camera.samples.min(MIN_PART));
         Self {
             is_averaged: camera.samples > 1 || camera.adaptive.is_some(),
             budget: Budget { rays: MAX_TREE / parts, work: MAX_RAYS as u32 / parts },

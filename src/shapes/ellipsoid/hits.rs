@@ -5,7 +5,7 @@ use crate::{sphere, uv};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, per_axis};
-use tabray_world::accuracy::{AccuracyTag, Bounded};
+use tabray_world::accuracy::{AccuracyTag, NotClassic};
 use tabray_world::certify::Equation;
 use tabray_world::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use tabray_world::hittable::{Bracketed, Certified, Facts, Hittable, Sides};
@@ -47,7 +47,7 @@ impl<A: AccuracyTag> Hittable for Ellipsoid<A> {
     }
 }
 
-impl<A: Bounded> Bracketed for Ellipsoid<A> {
+impl<A: NotClassic> Bracketed for Ellipsoid<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         Ellipsoid::t_bounds(self, ray, range)
@@ -59,7 +59,7 @@ impl<A: Bounded> Bracketed for Ellipsoid<A> {
     }
 }
 
-impl<A: Bounded> Certified for Ellipsoid<A> {
+impl<A: NotClassic> Certified for Ellipsoid<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         Ellipsoid::is_on_surface(self, at, error)
     }

@@ -30,7 +30,7 @@ const LEAST: usize = 4;
 const WIDEST: f64 = 1.0 / 32.0;
 
 /// The maximum number of examined pieces of a beam.
-const MOST_PIECES: usize = 64;
+const MAX_PIECES: usize = 64;
 
 /// The number of pieces of a beam if none is halved.
 const PARTS: f64 = 8.0;
@@ -322,7 +322,7 @@ impl<'s, T: Implicit> Beam<'s, T> {
             }
         }
         let mut is_halved = false;
-        for _ in 0..MOST_PIECES {
+        for _ in 0..MAX_PIECES {
             let Search { at: low, step, is_above, run, .. } = *search;
             if low >= self.to {
                 return if run.is_none() { Ok(Found::None) } else { Err(Open::Wide) };

@@ -4,7 +4,7 @@ use super::formula::Implicit;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
-use tabray_exact::polynomial::{Coefficient, FEW, MOST, Polynomial};
+use tabray_exact::polynomial::{Coefficient, FEW, MAX_COEFFICIENTS, Polynomial};
 use tabray_exact::roots::bernstein::NearRoot;
 use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::range::Side;
@@ -30,7 +30,7 @@ const STEPS: usize = 5;
 const BEYOND: f64 = 4.0 * f64::EPSILON;
 
 /// A formula along an exact ray.
-pub(super) struct ExactRay<'s, T> {
+pub(super) struct TrueRay<'s, T> {
     pub formula: &'s T,
     pub frame: &'s Frame,
     /// The ray in world space, and the distance along it from which roots are counted, in world units.
@@ -38,14 +38,14 @@ pub(super) struct ExactRay<'s, T> {
     pub closest: f64,
 }
 
-impl<T: Implicit> ExactRay<'_, T> {
+impl<T: Implicit> TrueRay<'_, T> {
     /// Returns the first root on a piece of the exact ray. For a ray that leaves the surface, only roots of the other
     /// direction count.
     pub fn first_root(&self, degree: usize, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         if degree < FEW {
             self.first_root_with::<FEW>(piece, origin_side)
         } else {
-            self.first_root_with::<MOST>(piece, origin_side)
+            self.first_root_with::<MAX_COEFFICIENTS>(piece, origin_side)
         }
     }
 

@@ -1,6 +1,6 @@
 //! The formula of an implicit surface along a ray.
 
-use super::finely::ExactRay;
+use super::finely::TrueRay;
 use super::formula::Implicit;
 use super::parts::Parts;
 use glam::DVec3;
@@ -25,15 +25,15 @@ use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
 const FEW_PIECES: usize = 32;
 
 /// The maximum number of operations of a search if each piece is evaluated once, as long as that leaves
-/// [`LEAST_PIECES`]. No ray takes longer, however often its formula oscillates.
+/// [`MIN_PIECES`]. No ray takes longer, however often its formula oscillates.
 const OPERATIONS: u64 = 20_000;
 
 /// The number of pieces that may be examined for any formula.
-const LEAST_PIECES: usize = 128;
+const MIN_PIECES: usize = 128;
 
 /// The maximum number of examined pieces on a ray that stands for others, such as a ray in the space of a copy. With
 /// more pieces, a proof decides.
-const MOST_DRIFTING: usize = 256;
+const MAX_DRIFTING: usize = 256;
 
 /// A shape with hits and normals from its formula.
 pub(super) struct ImplicitShape<T> {
@@ -68,7 +68,7 @@ impl<T: Implicit> ImplicitShape<T> {
 
 /// Returns the maximum number of examined pieces on a ray, for a formula that takes so many operations.
 pub(super) fn most_pieces(cost: u64) -> usize {
-    ((OPERATIONS / cost.max(1)) as usize).clamp(LEAST_PIECES, taylor::MAX_PIECES)
+    ((OPERATIONS / cost.max(1)) as usize).clamp(MIN_PIECES, taylor::MAX_PIECES)
 }
 
 /// Whether a surface is kept at a root, and whether that is certain in `f64`.
@@ -104,9 +104,9 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     }
 
     /// Returns the formula along the exact ray.
-    pub fn exactly(&self) -> ExactRay<'s, T> {
+    pub fn exactly(&self) -> TrueRay<'s, T> {
         let ImplicitShape { formula, frame, .. } = self.shape;
-        ExactRay { formula, frame, ray: self.ray, closest: self.closest }
+        TrueRay { formula, frame, ray: self.ray, closest: self.closest }
     }
 
     /// Makes the ray stand for all rays within a drift.
@@ -118,7 +118,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     /// Returns a bracket of the first hits, for all rays that this one stands for.
     pub fn bracket(&self, range: &RayRange) -> Bracket {
         let stretch = self.stretch();
-        let root = match self.first_root(&stretch, range, &mut MOST_DRIFTING.clone()) {
+        let root = match self.first_root(&stretch, range, &mut MAX_DRIFTING.clone()) {
             FirstRoot { root: Some(root), is_certain: true } => root,
             FirstRoot { root: None, is_certain: true } => return Bracket::MISS,
             _ => return Bracket::UNKNOWN,

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::certify::{self, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
 use tabray_world::geometry::sight::Line;
 
@@ -22,7 +22,7 @@ pub(super) fn everywhere<F: Precise>(_: HitEnclosure<F>) -> f64 {
 impl Surface {
     /// Returns the enclosure of a line's first hit with t > 0, and the hit face. `leaves` is the face that the line's
     /// exact start lies on.
-    pub(super) fn first_along<A: Bounded, F: Precise>(
+    pub(super) fn first_along<A: NotClassic, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
@@ -34,7 +34,7 @@ impl Surface {
         (F::IS_LONG && leaves.is_none() && is_open).then(exactly).flatten().unwrap_or(found)
     }
 
-    fn first_by_bounds<A: Bounded, F: Precise>(
+    fn first_by_bounds<A: NotClassic, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
@@ -75,7 +75,7 @@ impl Surface {
 
     /// Returns what is proven about each of a line's hits with t > 0, and the hit faces, in order, up to the first that
     /// is open.
-    pub(super) fn all_along<A: Bounded, F: Precise>(
+    pub(super) fn all_along<A: NotClassic, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
@@ -105,7 +105,7 @@ impl Surface {
     /// Returns the faces that a line may hit, each with the enclosure of its first hit and the minimum t of that hit.
     /// `is_left` tells whether the line's exact start lies in the plane of a face. `end_at` returns the t beyond which
     /// faces no longer matter, given what is known of a face; they may be omitted.
-    pub(super) fn met<A: Bounded, F: Precise>(
+    pub(super) fn met<A: NotClassic, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         is_left: impl Fn(usize) -> bool,
@@ -129,7 +129,7 @@ impl Surface {
 
     /// Tells whether other faces hide a face beside the point where a line hits it, like
     /// [`is_hidden`](Self::is_hidden), or `None` if that is undecided.
-    pub(super) fn is_certainly_hidden<A: Bounded, F: Precise>(
+    pub(super) fn is_certainly_hidden<A: NotClassic, F: Precise>(
         &self,
         face: usize,
         line: &Line<Interval<F>>,
@@ -155,7 +155,7 @@ impl Surface {
     }
 
     /// Calls `met` with the possible first hits of each face.
-    pub(super) fn hits_of_footprint<A: Bounded>(
+    pub(super) fn hits_of_footprint<A: NotClassic>(
         &self,
         line: &Line<Affine>,
         leaves: Option<usize>,
@@ -171,7 +171,7 @@ impl Surface {
 
     /// Tells whether a line hits the outside of a face, or whether the mesh is open. Returns `None` if that is
     /// undecided.
-    fn is_certainly_outside<A: Bounded, F: Precise>(
+    fn is_certainly_outside<A: NotClassic, F: Precise>(
         &self,
         face: usize,
         line: &Line<Interval<F>>,

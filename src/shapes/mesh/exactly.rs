@@ -6,7 +6,7 @@ use glam::DVec3;
 use tabray_exact::interval::{Interval, Wide};
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 use tabray_exact::whole_line::{Crossing, Seen, WholeLine};
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::certify::{HitEnclosure, Precise, exact_line};
 use tabray_world::geometry::sight::Line;
 
@@ -68,7 +68,7 @@ impl Surface {
 
     /// Returns the enclosure of a line's first hit with t > 0, and the hit face, like
     /// [`first_along`](Self::first_along); `None` if the line's numbers are no fractions.
-    pub(super) fn first_exactly<A: Bounded, F: Precise>(
+    pub(super) fn first_exactly<A: NotClassic, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
     ) -> Option<(HitEnclosure<F>, usize)> {

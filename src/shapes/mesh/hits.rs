@@ -12,7 +12,7 @@ use f256::f256;
 use glam::DVec3;
 use std::cell::Cell;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::certify::{self, Enclosure, HitEnclosure, Precision};
 use tabray_world::coincidence::{CLOSE, close};
 use tabray_world::geometry::aabb::{Aabb, larger};
@@ -48,7 +48,7 @@ impl Surface {
 
     /// Returns the bracket of a ray's first hit in a range. Its width is 0 if `f64` arithmetic finds the distance.
     #[inline(always)]
-    pub(super) fn bracket<A: Bounded>(
+    pub(super) fn bracket<A: NotClassic>(
         &self,
         cpu: Cpu,
         ray: &Ray,
@@ -63,7 +63,7 @@ impl Surface {
     /// plane. Also returns the face that [`face_along`](Self::face_along) finds at the bracket's distance, if it is
     /// known.
     #[inline(always)]
-    pub(super) fn bracketed<A: Bounded>(
+    pub(super) fn bracketed<A: NotClassic>(
         &self,
         known: Known,
         crossing: f64,
@@ -92,7 +92,7 @@ impl Surface {
 
     /// Returns a bracket of the first hits in a range, for all rays that `ray` stands for.
     #[inline(always)]
-    pub(super) fn bracket_within<A: Bounded>(&self, cpu: Cpu, ray: &RayBall, range: &RayRange) -> Bracket {
+    pub(super) fn bracket_within<A: NotClassic>(&self, cpu: Cpu, ray: &RayBall, range: &RayRange) -> Bracket {
         let known = self.first(cpu, ray, range, NOTHING, ray.drift, false);
         known.within(self.crossing::<A>(known, ray))
     }
@@ -100,13 +100,13 @@ impl Surface {
     /// Returns the distance of the plane of the face that a ray hits, if that is known. Returns NaN if `f64` arithmetic
     /// is not enough.
     #[inline(always)]
-    fn crossing<A: Bounded>(&self, known: Known, ray: &Ray) -> f64 {
+    fn crossing<A: NotClassic>(&self, known: Known, ray: &Ray) -> f64 {
         known.face().map_or(f64::NAN, |face| self.plane::<A>(face).quick_crossing(ray))
     }
 
     /// Returns the distance of a certain hit with a bracket, or NaN if `f64` arithmetic is not enough.
     #[inline(never)]
-    pub(super) fn refined<A: Bounded>(
+    pub(super) fn refined<A: NotClassic>(
         &self,
         ray: &Ray,
         range: &RayRange,
@@ -148,7 +148,7 @@ impl Surface {
 
     /// Returns the distance of a ray's first hit in a range, decided for the rounded ray, or [`MISS`] if there is none.
     /// The ray leaves the faces within `leaves` world units of its origin, or no face if this is negative.
-    pub(super) fn distance<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
+    pub(super) fn distance<A: NotClassic>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
         let mut first = MISS;
         let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
         self.each(ray, range, leaving, |face, _| {
@@ -215,7 +215,7 @@ impl Surface {
     }
 
     /// Returns the enclosure of a ray's first hit, and the hit face.
-    pub(super) fn certify<A: Bounded>(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+    pub(super) fn certify<A: NotClassic>(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         let line = sight.line::<Interval>();
         let Aabb { low, high } = self.bounds;
         let reach = line.origin.iter().fold(0.0, |reach, at| larger(reach, at.magnitude()));
@@ -287,14 +287,14 @@ impl Surface {
 
     /// Returns the exact triangle of a face.
     #[inline(always)]
-    pub(super) fn triangle<A: Bounded>(&self, face: usize) -> Triangle<A> {
+    pub(super) fn triangle<A: NotClassic>(&self, face: usize) -> Triangle<A> {
         let corners = self.corners(face);
         Triangle::new(corners).expect("faces without an area are left out")
     }
 
     /// Returns the plane of a face, for distances only.
     #[inline(always)]
-    pub(super) fn plane<A: Bounded>(&self, face: usize) -> Plane<A> {
+    pub(super) fn plane<A: NotClassic>(&self, face: usize) -> Plane<A> {
         plane_for_distances(self.corners(face))
     }
 

@@ -5,14 +5,14 @@ use super::memo::Memo;
 use super::search::Aims;
 use super::shape::Mesh;
 use crate::triangle::{crossings, unit_normals};
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use tabray_world::geometry::ray_packet::{self, PACKET_SIZE, RayPacket, SurfaceInteraction, turned};
 use tabray_world::packets::shape::PacketIntersect;
 use tabray_world::simd::cpu::{Cpu, kernels};
 use tabray_world::simd::soa::{LANES, Vectors};
 
-impl<A: Bounded> PacketIntersect for Mesh<A> {
+impl<A: NotClassic> PacketIntersect for Mesh<A> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {
         near.fill(MISS);
         far.fill(MISS);
@@ -123,7 +123,7 @@ impl<A: Bounded> PacketIntersect for Mesh<A> {
     }
 }
 
-impl<A: Bounded> Mesh<A> {
+impl<A: NotClassic> Mesh<A> {
     /// Searches for the first hits of a packet's rays before their ends. Calls a function for each ray with an end
     /// beyond 0, with its lane, the result and, if that is a face, the distance of its plane.
     #[inline(always)]
@@ -170,12 +170,12 @@ fn is_copy(rays: &RayPacket, lane: usize) -> bool {
 kernels! {
     /// Computes the distances of the planes of eight faces, each along its own ray, or NaN if `f64` arithmetic is not
     /// enough.
-    fn cross[A: Bounded](mesh: &Mesh<A>, faces: &[usize; LANES], rays: RayPacket, distances: &mut [f64; LANES]) {
+    fn cross[A: NotClassic](mesh: &Mesh<A>, faces: &[usize; LANES], rays: RayPacket, distances: &mut [f64; LANES]) {
         crossings::<A>(&mesh.surface.corners_of(faces), rays, distances);
     }
 
     /// Computes the hit points, normals and sides at these distances, in world units.
-    fn interact[A: Bounded](
+    fn interact[A: NotClassic](
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &mut Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals, geometric_normals {

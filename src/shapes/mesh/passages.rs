@@ -17,7 +17,7 @@ use tabray_exact::double_double::exact::Exact;
 use tabray_exact::double_double::vectors::{cross, scaled_to_one};
 use tabray_exact::double_double::{exponent_to_one, times_power_of_two};
 use tabray_exact::scalar::per_axis;
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::coincidence::close;
 use tabray_world::geometry::orientation::side_of_plane;
 use tabray_world::geometry::ray::{MISS, Ray, RayError, RayRange};
@@ -44,7 +44,7 @@ pub(super) struct Turn {
 impl Surface {
     /// Returns the places where a ray crosses the boundary of a closed mesh's inside, in order. The ray leaves the
     /// faces within `leaves` world units of its origin, or no face if this is negative.
-    pub(super) fn turns<A: Bounded>(&self, ray: &Ray, leaves: f64) -> Vec<Turn> {
+    pub(super) fn turns<A: NotClassic>(&self, ray: &Ray, leaves: f64) -> Vec<Turn> {
         let passages = self.passages::<A>(ray, leaves);
         let mut winding = winding(&passages);
         let mut turns = Vec::new();
@@ -64,7 +64,7 @@ impl Surface {
 
     /// Returns the faces of a closed mesh that a ray crosses, by distance. Faces at the same distance are in the order
     /// of the file.
-    pub(super) fn passages<A: Bounded>(&self, ray: &Ray, leaves: f64) -> Vec<Passage> {
+    pub(super) fn passages<A: NotClassic>(&self, ray: &Ray, leaves: f64) -> Vec<Passage> {
         let mut passages = Vec::new();
         let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
         self.each(ray, &RayRange::ALL, leaving, |face, _| {

@@ -5,7 +5,7 @@ use super::surface::Surface;
 use crate::triangle::Triangle;
 use glam::DVec3;
 use tabray_exact::interval::Interval;
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::coincidence::CLOSE;
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::MISS;
@@ -91,12 +91,12 @@ impl Surface {
     }
 
     /// Tells whether a point is on a face, up to an error in world units and to rounding.
-    pub(super) fn is_on_surface<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
+    pub(super) fn is_on_surface<A: NotClassic>(&self, at: DVec3, error: f64) -> bool {
         self.is_on_one_of::<A>(at, error, |_| true)
     }
 
     /// Tells whether a point is on one of the wanted faces, up to an error in world units and to rounding.
-    pub(super) fn is_on_one_of<A: Bounded>(
+    pub(super) fn is_on_one_of<A: NotClassic>(
         &self,
         at: DVec3,
         error: f64,
@@ -114,7 +114,7 @@ impl Surface {
 }
 
 /// Tells whether a point is on a face, up to an error in world units and to rounding.
-pub(super) fn is_on_surface<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
+pub(super) fn is_on_surface<A: NotClassic>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
     let Aabb { low, high } = Aabb::around(&triangle.corners);
     let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
     (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.is_on_surface(at, error)

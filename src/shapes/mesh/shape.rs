@@ -12,7 +12,7 @@ use tabray_exact::affine::Affine;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
-use tabray_world::accuracy::{Accuracy, Bounded};
+use tabray_world::accuracy::{Accuracy, NotClassic};
 use tabray_world::certify::{
     Assumption, Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Precision, Premise,
     ProofMethods,
@@ -37,9 +37,9 @@ pub struct Mesh<A> {
 
 /// The maximum number of vertices that are mapped to find the box of a copy. A million copies with that many vertices
 /// take two seconds.
-const MOST_MAPPED: usize = 1000;
+const MAX_MAPPED: usize = 1000;
 
-impl<A: Bounded> Mesh<A> {
+impl<A: NotClassic> Mesh<A> {
     /// Makes the shape of a surface.
     pub fn new(surface: Arc<Surface>, accuracy: Accuracy) -> Self {
         Self { surface, can_hit_itself: accuracy != Accuracy::Classic, accuracy: PhantomData }
@@ -77,7 +77,7 @@ impl<A: Bounded> Mesh<A> {
 /// The number of plain rays that take as long as the search for a ray's hit, 2 to 5 microseconds.
 pub(super) const RAYS_PER_SEARCH: u32 = 4;
 
-impl<A: Bounded> Hittable for Mesh<A> {
+impl<A: NotClassic> Hittable for Mesh<A> {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if range.origin_side.is_none() {
             return self.surface.distance::<A>(ray, range, -1.0);
@@ -126,7 +126,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
                 .map(|at| *linear * *at)
                 .fold(Aabb::EMPTY, |all, at| all.and(&Aabb { low: at, high: at }))
         };
-        (vertices.len() <= MOST_MAPPED).then(around)
+        (vertices.len() <= MAX_MAPPED).then(around)
     }
 
     fn why_not_closed(&self) -> Option<&str> {
@@ -186,7 +186,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 }
 
-impl<A: Bounded> HitQueries for Mesh<A> {
+impl<A: NotClassic> HitQueries for Mesh<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         self.surface.is_on_surface::<A>(at, error)
     }
@@ -236,7 +236,7 @@ impl<A: Bounded> HitQueries for Mesh<A> {
     }
 }
 
-impl<A: Bounded, F: Precise> HitProofs<F> for Mesh<A> {
+impl<A: NotClassic, F: Precise> HitProofs<F> for Mesh<A> {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         self.surface.first_along::<A, F>(line, leaves)
     }
@@ -278,7 +278,7 @@ impl<A: Bounded, F: Precise> HitProofs<F> for Mesh<A> {
     }
 }
 
-impl<A: Bounded> OverFootprint for Mesh<A> {
+impl<A: NotClassic> OverFootprint for Mesh<A> {
     fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         self.surface.hits_of_footprint::<A>(line, leaves, met);
     }

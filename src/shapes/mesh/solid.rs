@@ -3,16 +3,16 @@
 use super::surface::Surface;
 use super::winding::DIRECTIONS;
 use glam::DVec3;
-use tabray_world::accuracy::Bounded;
+use tabray_world::accuracy::NotClassic;
 use tabray_world::coincidence::ROUNDING;
 use tabray_world::geometry::facet::Facet;
 use tabray_world::geometry::ray::{MISS, Ray, RayRange};
 
 /// The minimum cosine between a direction and the normal of a face at which the side of the face is trusted.
-const LEAST_COSINE: f64 = 1e-3;
+const MIN_COSINE: f64 = 1e-3;
 
 /// The maximum number of faces of a convex mesh whose inside is tested by planes.
-const MOST_PLANES: usize = 64;
+const MAX_PLANES: usize = 64;
 
 /// Returns a bound of the rounding error of the distance between a point and a plane through another point.
 fn rounding(point: DVec3, at: DVec3) -> f64 {
@@ -49,7 +49,7 @@ fn inside(planes: &[[DVec3; 2]], at: DVec3, error: f64) -> Option<bool> {
 impl Surface {
     /// Tells whether a point lies in a closed mesh, or `None` if the surface may be within `error`, in world units, or
     /// if no direction decides.
-    pub(super) fn contains<A: Bounded>(&self, at: DVec3, error: f64) -> Option<bool> {
+    pub(super) fn contains<A: NotClassic>(&self, at: DVec3, error: f64) -> Option<bool> {
         if let Some(planes) = self.planes.get_or_init(|| self.convex::<A>()) {
             return inside(planes, at, error);
         }
@@ -65,7 +65,7 @@ impl Surface {
             }
             let normal = self.triangle::<A>(self.face_along(&ray, distance)).plane.normal;
             let cosine = ray.dir.dot(normal);
-            if cosine.abs() > LEAST_COSINE {
+            if cosine.abs() > MIN_COSINE {
                 return Some(cosine > 0.0);
             }
         }
@@ -75,7 +75,7 @@ impl Surface {
     /// Returns the facet in whose plane the whole surface within `error`, in world units, of a point lies. Returns
     /// `None` if there are several such planes or none, if the plane is not across an axis, or if the mesh is not known
     /// to be convex.
-    pub(super) fn facet<A: Bounded>(&self, at: DVec3, error: f64) -> Option<Facet> {
+    pub(super) fn facet<A: NotClassic>(&self, at: DVec3, error: f64) -> Option<Facet> {
         let planes = self.planes.get_or_init(|| self.convex::<A>()).as_ref()?;
         let mut facet = None;
         for (face, plane) in planes.iter().enumerate() {
@@ -95,8 +95,8 @@ impl Surface {
 
     /// Returns the planes of the faces of a certainly convex closed mesh, each as a normal and a point. Returns `None`
     /// for other meshes, and for meshes with many faces.
-    fn convex<A: Bounded>(&self) -> Option<Box<[[DVec3; 2]]>> {
-        if self.face_count() > MOST_PLANES {
+    fn convex<A: NotClassic>(&self) -> Option<Box<[[DVec3; 2]]>> {
+        if self.face_count() > MAX_PLANES {
             return None;
         }
         let plane = |face: usize| [self.triangle::<A>(face).plane.normal, self.corners(face)[0]];

@@ -23,7 +23,7 @@ pub(super) const DIRECTIONS: [DVec3; 4] = [
 const FLAT: f64 = 1e-12;
 
 /// The maximum number of faces that are tested to find which parts lie in others, which takes about a second.
-const MOST_TESTED: usize = 1 << 27;
+const MAX_TESTED: usize = 1 << 27;
 
 /// The edges that keep a mesh from being closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -198,7 +198,7 @@ fn turn_out(parts: &mut [Part], part_of: &[u32], vertices: &[DVec3], faces: &[[u
         &faces_of[end(part)..end(part + 1)]
     };
     let corners = |face: usize| faces[face].map(|corner| vertices[corner as usize]);
-    let (mut is_turned, mut left) = (vec![false; parts.len()], MOST_TESTED);
+    let (mut is_turned, mut left) = (vec![false; parts.len()], MAX_TESTED);
     for part in largest_first {
         let own = &parts[part];
         let [a, b, c] = corners(own.first);

@@ -21,7 +21,7 @@ use tabray_world::geometry::sight::{Line, Sight};
 use tabray_world::packets::shape::HitQueries;
 
 /// The maximum number of parts in which normals are enclosed.
-const MOST_NORMALS: usize = 256;
+const MAX_NORMALS: usize = 256;
 
 impl ParametricShape {
     fn proven_hit<F: Float>(&self, line: &Line<Interval<F>>, leaves: bool) -> (HitEnclosure<F>, usize)
@@ -61,7 +61,7 @@ impl ParametricShape {
             let margin = 0.25 * side.width();
             Interval { low: side.low - margin, high: side.high + margin }
         });
-        let (mut waiting, mut left) = (vec![whole], MOST_NORMALS);
+        let (mut waiting, mut left) = (vec![whole], MAX_NORMALS);
         let mut all: Option<[Interval<F>; 3]> = None;
         while let Some(part) = waiting.pop() {
             let patch = PatchesIn::<F>::patch(&*self.patches, &part.map(Interval::from_f64));

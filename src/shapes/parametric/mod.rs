@@ -24,7 +24,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{constants, per_axis};
 use tabray_world::any_shape::AnyShape;
 use tabray_world::body::Body;
-use tabray_world::coincidence::{LEAST_COSINE, ROUNDING};
+use tabray_world::coincidence::{MIN_COSINE, ROUNDING};
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use tabray_world::geometry::sight::Line;
 use tabray_world::hittable::{Facts, Hittable};
@@ -61,7 +61,7 @@ impl ParametricShape {
             }
             let leaves = || {
                 let along = normal(&*self.patches, at.map(|side| side.middle())).dot(ray.dir).abs();
-                t.low <= 4.0 * error / along.max(LEAST_COSINE)
+                t.low <= 4.0 * error / along.max(MIN_COSINE)
             };
             range.origin_side.is_some() && leaves()
         };

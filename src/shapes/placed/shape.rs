@@ -41,7 +41,7 @@ const CAMERA: RayError = RayError { origin: 0.0, dir: 3.0 * f64::EPSILON };
 
 /// The maximum drift of a direction for which brackets are computed. The relative error of lengths is as large, and
 /// must be far below the distance at which two hits count as coincident.
-const MOST_DRIFT: f64 = CLOSE / 16.0;
+const MAX_DRIFT: f64 = CLOSE / 16.0;
 
 impl Placed {
     /// Makes a copy of an object's shape.
@@ -94,7 +94,7 @@ impl Placed {
         // least 1 / `most` long.
         let dir = 2.0 * (drift.dir + TURN) * (most / least);
         let own = RayError { origin: (drift.origin + TURN * away) / least, dir };
-        (dir < MOST_DRIFT && own.origin < MISS).then_some(own)
+        (dir < MAX_DRIFT && own.origin < MISS).then_some(own)
     }
 
     /// Returns a range in object space. `length` is the length of a world unit along the ray there.

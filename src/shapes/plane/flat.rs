@@ -1,10 +1,10 @@
 //! Planes, and shapes that are a part of one, for packets of rays.
 
 use super::surface::Plane;
-use tabray_world::accuracy::{Accuracy, Bounded};
+use tabray_world::accuracy::{Accuracy, NotClassic};
 use tabray_world::geometry::ray_packet::RayPacket;
 
-impl<A: Bounded> Plane<A> {
+impl<A: NotClassic> Plane<A> {
     /// Writes the distances of certain hits of a part of the plane, eight rays at a time: a certain hit is in the
     /// plane, regardless of cut-outs. Writes NaN where a distance takes more than plain arithmetic.
     #[inline(always)]

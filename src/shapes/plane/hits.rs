@@ -3,7 +3,7 @@
 use super::Plane;
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
-use tabray_world::accuracy::{AccuracyTag, Bounded};
+use tabray_world::accuracy::{AccuracyTag, NotClassic};
 use tabray_world::geometry::aabb::{Aabb, SLACK};
 use tabray_world::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use tabray_world::geometry::ray_packet::RayPacket;
@@ -44,7 +44,7 @@ impl<A: AccuracyTag> Hittable for Plane<A> {
     }
 }
 
-impl<A: Bounded> Bracketed for Plane<A> {
+impl<A: NotClassic> Bracketed for Plane<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         Plane::t_bounds(self, &self.rough_crossing(ray, range.origin_error), ray, range)
@@ -62,7 +62,7 @@ impl<A: Bounded> Bracketed for Plane<A> {
     }
 }
 
-impl<A: Bounded> Certified for Plane<A> {
+impl<A: NotClassic> Certified for Plane<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         Plane::is_on_surface(self, at, error)
     }

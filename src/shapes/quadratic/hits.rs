@@ -3,7 +3,7 @@
 use super::Quadric;
 use glam::DVec3;
 use tabray_exact::scalar::Scalar;
-use tabray_world::accuracy::{AccuracyTag, Bounded};
+use tabray_world::accuracy::{AccuracyTag, NotClassic};
 use tabray_world::certify::Equation;
 use tabray_world::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use tabray_world::hittable::{Bracketed, Certified, Facts, Hittable, Sides};
@@ -50,7 +50,7 @@ impl<A: AccuracyTag> Hittable for Quadric<A> {
     }
 }
 
-impl<A: Bounded> Bracketed for Quadric<A> {
+impl<A: NotClassic> Bracketed for Quadric<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let may_leave = range.origin_error > 0.0 && range.origin_side.is_none();
@@ -66,7 +66,7 @@ impl<A: Bounded> Bracketed for Quadric<A> {
     }
 }
 
-impl<A: Bounded> Certified for Quadric<A> {}
+impl<A: NotClassic> Certified for Quadric<A> {}
 
 impl<A> Equation for Quadric<A> {
     const IS_QUADRATIC: bool = true;

@@ -24,7 +24,7 @@ const MARGIN: f64 = 4.0;
 
 /// The maximum distance between a ray and the rays that it stands for, as a fraction of the surface's radius. Rays with
 /// a larger spread are traced alone.
-const MOST_OFF: f64 = 1e-4;
+const MAX_OFFSET: f64 = 1e-4;
 
 /// The maximum number of rays that are bracketed together. It is small enough to keep their data in the cache, and to
 /// skip slabs that none of them reaches.
@@ -112,7 +112,7 @@ kernels! {
             // three axes, is below 9. The errors of the direction are sqrt(3) of 3 in the axes and 3/2 in the rotation,
             // 1 for a camera ray's rounded direction, and 1 for the point along the ray: below 10.
             let off = 12.0 * f64::EPSILON * (origin.abs().element_sum() + base) + lanes.off[lane];
-            let is_wide = lanes.off[lane] > MOST_OFF * widest;
+            let is_wide = lanes.off[lane] > MAX_OFFSET * widest;
 
             let inverse_dy = 1.0 / dir.y;
             let (bottom, top) = (-moved.y * inverse_dy, (height - moved.y) * inverse_dy);

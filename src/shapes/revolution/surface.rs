@@ -13,7 +13,7 @@ use tabray_world::geometry::aabb::{Aabb, SLACK};
 use tabray_world::text;
 
 /// The maximum number of examined pieces of a profile to decide whether it crosses the axis.
-const MOST_PIECES: usize = 10_000;
+const MAX_PIECES: usize = 10_000;
 
 /// A surface of revolution around the y axis, from the origin upward.
 pub struct Revolution {
@@ -63,7 +63,7 @@ impl Revolution {
         if !is_on_axis(0.0) || !is_on_axis(self.height) {
             return Some("its profile does not begin and end on the axis");
         }
-        let (mut waiting, mut left) = (vec![(0.0, self.height)], MOST_PIECES);
+        let (mut waiting, mut left) = (vec![(0.0, self.height)], MAX_PIECES);
         while let Some((low, high)) = waiting.pop() {
             if radius(low, high).low >= -rounding {
                 continue;

@@ -15,7 +15,7 @@ use tabray_world::scene::pparm::Pparm;
 use tabray_world::solid::{Operation, Tree, common};
 
 /// The maximum number of parts of a solid. Each of them may have to be compared with all others.
-const MOST_PARTS: usize = 1024;
+const MAX_PARTS: usize = 1024;
 
 /// The maximum nesting depth of solids. The name of a part contains the names of all solids around it.
 const DEEPEST: usize = 256;
@@ -60,7 +60,7 @@ impl NoSolid {
                  on its axis, a mesh without holes; for a cut along a plane, use a large box",
             ),
             Self::TooMany => (
-                format!("has more than {MOST_PARTS} parts"),
+                format!("has more than {MAX_PARTS} parts"),
                 "a `union` of objects that do not overlap can be left out: the objects are seen without it",
             ),
             Self::TooDeep => (
@@ -143,7 +143,7 @@ pub(crate) fn placed(
 /// # Errors
 /// Returns the reason why there are none.
 pub(super) fn body_of(mut solid: Solid, material: Option<Arc<Material>>) -> Result<Body, NoSolid> {
-    if solid.parts.len() > MOST_PARTS {
+    if solid.parts.len() > MAX_PARTS {
         return Err(NoSolid::TooMany);
     }
     if solid.tree.depth() > DEEPEST {

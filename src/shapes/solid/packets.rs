@@ -3,7 +3,9 @@
 use super::solid_part::{Known, SolidPart};
 use tabray_world::coincidence::close;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
-use tabray_world::geometry::ray_packet::{BEAM, Nearest, PACKET_SIZE, RayPacket, SurfaceInteraction, split};
+use tabray_world::geometry::ray_packet::{
+    BEAM, HitRecordMut, PACKET_SIZE, RayPacket, SurfaceInteraction, split,
+};
 use tabray_world::hittable::Hittable;
 use tabray_world::packets::brackets;
 use tabray_world::packets::shape::{self, PacketIntersect};
@@ -86,7 +88,7 @@ impl PacketIntersect for SolidPart {
         }
     }
 
-    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: HitRecordMut) -> bool {
         if !self.is_whole() {
             return brackets::closest_by_brackets(cpu, rays.len(), id, nearest, |ends, brackets| {
                 self.brackets(cpu, rays, ends, brackets);

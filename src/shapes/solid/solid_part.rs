@@ -6,7 +6,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::body::Part;
 use tabray_world::certify::{self, Enclosure, Precision, Premise, ProofMethods};
-use tabray_world::coincidence::{self, CLOSE, LEAST_COSINE, ROUNDING};
+use tabray_world::coincidence::{self, CLOSE, MIN_COSINE, ROUNDING};
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use tabray_world::geometry::sight::Sight;
@@ -15,7 +15,7 @@ use tabray_world::packets::shape::{HitQueries, by_distance};
 use tabray_world::solid::Tree;
 
 /// The maximum number of hits of a part that are visited along a ray.
-const MOST_HITS: usize = 1024;
+const MAX_HITS: usize = 1024;
 
 /// The distance from a possibly coincident surface at which both of its sides are examined, as a multiple of the error
 /// of the point.
@@ -36,7 +36,6 @@ pub(super) struct Known {
 
 /// The surface of a part, where it is the surface of the solid.
 pub struct SolidPart {
-    /// All parts of the solid.
     pub(super) parts: Arc<[Part]>,
     around: Arc<[Option<Aabb>]>,
     /// The index of the part whose surface this is.
@@ -173,7 +172,7 @@ impl SolidPart {
     fn is_certainly_on_solid(&self, ray: &Ray, distance: f64, size: f64) -> Option<bool> {
         let at = ray.at(distance);
         // The first error holds for any hit. The second, for this hit, needs the normal.
-        self.is_on_solid(at, ROUNDING / LEAST_COSINE * size).or_else(|| {
+        self.is_on_solid(at, ROUNDING / MIN_COSINE * size).or_else(|| {
             let error = coincidence::error(ray, distance, self.own().normal(at), self.facts.max_coordinate);
             self.is_on_solid(at, error).or_else(|| self.is_on_solid_in_plane(at, error))
         })
@@ -245,7 +244,7 @@ impl SolidPart {
         let Some(within) = within else { return (MISS, true) };
         // The side of the part from which the next hit comes. The sides alternate.
         let mut from = leaves.or(is_apart.then_some(Side::Outside));
-        for _ in 0..MOST_HITS {
+        for _ in 0..MAX_HITS {
             if leaves.is_some_and(|side| !shape.can_hit_itself(side)) {
                 break;
             }

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, dot, per_axis};
-use tabray_world::accuracy::{AccuracyTag, Bounded};
+use tabray_world::accuracy::{AccuracyTag, NotClassic};
 use tabray_world::certify::Equation;
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
@@ -46,7 +46,7 @@ impl<A: AccuracyTag> Hittable for LooseTriangle<A> {
     }
 }
 
-impl<A: Bounded> Bracketed for LooseTriangle<A> {
+impl<A: NotClassic> Bracketed for LooseTriangle<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         LooseTriangle::t_bounds(self, ray, range)
@@ -70,7 +70,7 @@ impl<A: Bounded> Bracketed for LooseTriangle<A> {
     }
 }
 
-impl<A: Bounded> Certified for LooseTriangle<A> {
+impl<A: NotClassic> Certified for LooseTriangle<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         self.rough_plane().is_on_surface(at, error)
     }

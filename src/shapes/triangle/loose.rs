@@ -6,7 +6,7 @@ use crate::plane::Plane;
 use glam::DVec3;
 use std::marker::PhantomData;
 use tabray_exact::double_double::DoubleDouble;
-use tabray_world::accuracy::{AccuracyTag, Bounded, Classic};
+use tabray_world::accuracy::{AccuracyTag, Classic, NotClassic};
 use tabray_world::geometry::ray::{Bracket, MISS, RayBall, RayError, RayRange};
 use tabray_world::geometry::ray_packet::RayPacket;
 use tabray_world::simd::soa::LANES;
@@ -32,7 +32,7 @@ impl LooseTriangle<Classic> {
     }
 }
 
-impl<A: Bounded> LooseTriangle<A> {
+impl<A: NotClassic> LooseTriangle<A> {
     /// Returns the triangle with these corners, ending at a z, in world units, if one is given. Returns `None` if the
     /// corners are collinear.
     pub fn new(corners: [DVec3; 3], max_z: Option<f64>) -> Option<Self> {
@@ -67,7 +67,7 @@ impl<A: AccuracyTag> LooseTriangle<A> {
     }
 }
 
-impl<A: Bounded> LooseTriangle<A> {
+impl<A: NotClassic> LooseTriangle<A> {
     /// Returns a bracket of the distance at which a ray crosses the triangle.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {

@@ -16,10 +16,10 @@ use tabray_core::scene::model::Model;
 use tabray_core::world::material::{Material, Rgb};
 
 /// The maximum number of changed scenes.
-const MOST_TRIALS: usize = 256;
+const MAX_TRIALS: usize = 256;
 
 /// The maximum number of lights for which trials are made one by one.
-const MOST_LIGHTS: usize = 6;
+const MAX_LIGHTS: usize = 6;
 
 /// The number of objects that are taken away, one behind the other.
 const DEEPEST: usize = 3;
@@ -76,7 +76,7 @@ pub(super) fn explain<E>(
 ) -> Result<Vec<([usize; 2], Mistake)>, E> {
     let seen = |at: &[usize; 2]| Seen::of(compared, view, *at);
     let mut pixels: Vec<Seen> = renderer.run(|| different.par_iter().map(seen).collect());
-    let mut trials = Trials { renderer, compared, make, view, left: MOST_TRIALS };
+    let mut trials = Trials { renderer, compared, make, view, left: MAX_TRIALS };
     trials.of_light(&mut pixels)?;
     trials.of_objects(&mut pixels)?;
     pixels.iter_mut().for_each(|pixel| pixel.look_beside(compared, view));
@@ -239,13 +239,13 @@ impl Seen {
         if !self.blocked.is_empty() {
             all.push((alone(Vec::new()), Mistake::ShadowMissing { lights: self.blocked.clone(), on }));
         }
-        if (2..=MOST_LIGHTS).contains(&self.blocked.len()) {
+        if (2..=MAX_LIGHTS).contains(&self.blocked.len()) {
             for light in &self.blocked {
                 let dark = self.blocked.iter().copied().filter(|other| other != light).collect();
                 all.push((alone(dark), Mistake::ShadowMissing { lights: vec![*light], on }));
             }
         }
-        if self.shining.len() <= MOST_LIGHTS {
+        if self.shining.len() <= MAX_LIGHTS {
             for light in &self.shining {
                 all.push((Trial::Dark(vec![*light]), Mistake::ShadowTooMuch { lights: vec![*light], on }));
             }

@@ -76,7 +76,7 @@ fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {
         messages::note(&format!("{}: {}", item.name, item.change.summary()));
     }
     page.write("tabray review", &items)?;
-    if is_whole { Ok(()) } else { Err(Failure::Told) }
+    if is_whole { Ok(()) } else { Err(Failure::AlreadyReported) }
 }
 
 /// Accepts or rejects the snapshots at these paths.

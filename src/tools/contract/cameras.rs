@@ -134,9 +134,9 @@ fn in_packets(camera: &Sensor, [right, top]: [f64; 2]) -> Result<(), Fault> {
         let places = camera.places_of([&x, &y], lens);
         let (mut origins, mut dirs) = (Vectors::<LANES>::of(camera.origins().middle), Vectors::<LANES>::ZERO);
         if is_from_one {
-            camera.camera.look(cpu, &places, dirs.view_mut(LANES));
+            camera.camera.fill_directions(cpu, &places, dirs.view_mut(LANES));
         } else {
-            camera.camera.look_from(cpu, &places, origins.view_mut(LANES), dirs.view_mut(LANES));
+            camera.camera.fill_rays(cpu, &places, origins.view_mut(LANES), dirs.view_mut(LANES));
         }
         for lane in 0..LANES {
             let lens = if has_lens { DVec2::new(u[lane], v[lane]) } else { DVec2::ZERO };

@@ -5,7 +5,7 @@ use super::promise::{Fault, Promise};
 use glam::DVec3;
 use std::f64::consts::TAU;
 use tabray_core::geometry::ray::{MISS, Ray, RayBall, RayError, RayRange, Side};
-use tabray_core::geometry::ray_packet::{Nearest, RayPacket, SurfaceInteraction};
+use tabray_core::geometry::ray_packet::{HitRecordMut, RayPacket, SurfaceInteraction};
 use tabray_core::geometry::sight::Sight;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
@@ -107,7 +107,8 @@ impl RayTrial<'_> {
     fn packet_fault(&self, cpu: Cpu, rays: RayPacket, distance: f64) -> Option<String> {
         let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
         let (mut hit_ids, mut doubt) = ([0; LANES], [0; LANES]);
-        let nearest = Nearest { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
+        let nearest =
+            HitRecordMut { near: &mut near, far: &mut far, hit_ids: &mut hit_ids, doubt: &mut doubt };
         self.shape.closest_hits(cpu, rays, 1, nearest);
         let (low, high) = (near[0], far[0]);
         if doubt[0] != 0 {

@@ -7,7 +7,7 @@ use tabray_core::render::trace;
 use tabray_core::world::rules::Rules;
 
 /// The maximum number of object tests of a survey, which tests each object for each ray.
-const MOST_TESTS: usize = 1 << 23;
+const MAX_TESTS: usize = 1 << 23;
 
 /// The effect of a light at the places that are looked at.
 #[derive(Clone, Debug)]
@@ -75,7 +75,7 @@ impl<'p> Survey<'p> {
             current: Hit::default(),
         };
         let tests = plan.model.objects.len() * (1 + plan.model.lights.len());
-        let step = (places.len() * tests).div_ceil(MOST_TESTS).max(1);
+        let step = (places.len() * tests).div_ceil(MAX_TESTS).max(1);
         for [x, y] in places.iter().step_by(step) {
             let sight = plan.camera.sight(*x as f64, *y as f64);
             let colour = trace::observe_colour(plan, &sight, None, &mut survey);

@@ -7,7 +7,7 @@ use crate::geometry::sight::{Line, Sight};
 use f256::f256;
 use tabray_exact::formula::rational::Rational;
 use tabray_exact::interval::{Fine, Float, Interval, Wide};
-use tabray_exact::polynomial::{Coefficient, MOST, Polynomial};
+use tabray_exact::polynomial::{Coefficient, MAX_COEFFICIENTS, Polynomial};
 use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::whole::Root;
 use tabray_exact::scalar::per_axis;
@@ -15,11 +15,11 @@ use tabray_exact::scalar::per_axis;
 /// An equation that may be a polynomial with coefficients of one type.
 pub(super) trait Coefficients<C: Coefficient>: Values<Interval<C::End>> {
     /// Returns the polynomial along a line; unknown for another equation.
-    fn polynomial(&self, at: [Polynomial<C, MOST>; 3]) -> Polynomial<C, MOST>;
+    fn polynomial(&self, at: [Polynomial<C, MAX_COEFFICIENTS>; 3]) -> Polynomial<C, MAX_COEFFICIENTS>;
 }
 
 impl<E: Equation, C: Coefficient> Coefficients<C> for E {
-    fn polynomial(&self, at: [Polynomial<C, MOST>; 3]) -> Polynomial<C, MOST> {
+    fn polynomial(&self, at: [Polynomial<C, MAX_COEFFICIENTS>; 3]) -> Polynomial<C, MAX_COEFFICIENTS> {
         if self.is_polynomial() { self.along(at) } else { Polynomial::unknown() }
     }
 }
@@ -79,7 +79,7 @@ fn visit_hits<C: Coefficient>(
     let half = (Interval::point(to) - Interval::point(from)).high * C::End::of(0.5);
     let base = Interval::point(from + half);
     let near = Line { origin: line.at(base), dir: line.dir };
-    let along = Polynomial::<C, MOST>::along(Interval { low: -1.0, high: 1.0 });
+    let along = Polynomial::<C, MAX_COEFFICIENTS>::along(Interval { low: -1.0, high: 1.0 });
     let place = |axis: usize| {
         let step = near.dir[axis] * Interval::point(half);
         Polynomial::enclosed(near.origin[axis]) + Polynomial::enclosed(step) * along

@@ -19,6 +19,6 @@ pub use frame::Frame;
 pub use image_point::ImagePoint;
 pub use placement::{Placement, Rotation};
 pub use ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
-pub use ray_packet::{Nearest, RayPacket};
+pub use ray_packet::{HitRecordMut, RayPacket};
 pub use sight::{Line, Sight};
 pub use view_frame::ViewFrame;

@@ -111,7 +111,7 @@ impl<'r> RayPacket<'r> {
 }
 
 /// The closest known hits of a packet's rays. All arrays have one element per ray.
-pub struct Nearest<'n> {
+pub struct HitRecordMut<'n> {
     /// Lower bounds of the distance of the hit of the object in `hit_ids`, in world units.
     pub near: &'n mut [f64],
     /// Upper bounds of that distance, equal to `near` if the distance is known exactly. Without a hit, both bounds are
@@ -123,10 +123,10 @@ pub struct Nearest<'n> {
     pub doubt: &'n mut [u64],
 }
 
-impl Nearest<'_> {
+impl HitRecordMut<'_> {
     /// Returns the part for the rays in a range of indices.
-    pub fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
-        Nearest {
+    pub fn part(&mut self, range: Range<usize>) -> HitRecordMut<'_> {
+        HitRecordMut {
             near: &mut self.near[range.clone()],
             far: &mut self.far[range.clone()],
             hit_ids: &mut self.hit_ids[range.clone()],
@@ -137,7 +137,7 @@ impl Nearest<'_> {
 
 kernels! {
     /// Merges an object's brackets into the closest hits so far. Returns whether any ray is in doubt.
-    pub(crate) fn closest_of_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
+    pub(crate) fn closest_of_brackets(near: &[f64], far: &[f64], id: u64, nearest: HitRecordMut) -> bool {
         let count = nearest.near.len().min(near.len());
         let (near, far) = (&near[..count], &far[..count]);
         let known = Known { near, far };
@@ -174,7 +174,7 @@ impl Brackets for Known<'_> {
 
 /// Merges an object's brackets of `count` rays into the closest hits so far. Returns whether any ray is in doubt.
 ///
-/// The arrays are separate arguments, not a [`Nearest`], which tells the compiler that they do not overlap. Otherwise,
+/// The arrays are separate arguments, not a [`HitRecordMut`], which tells the compiler that they do not overlap. Otherwise,
 /// it would check for overlap at each call, and handle small counts of rays one by one.
 #[inline(always)]
 pub(crate) fn merge_nearest(

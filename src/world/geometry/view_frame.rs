@@ -26,7 +26,7 @@ struct ViewInputs {
 }
 
 /// The minimum sine of the angle between the forward and up directions of a frame.
-const LEAST_SINE: f64 = 1e-6;
+const MIN_SINE: f64 = 1e-6;
 
 impl ViewFrame {
     /// Returns the frame of a viewer that looks from a position toward a target. `up` is any vector that points up in
@@ -37,7 +37,7 @@ impl ViewFrame {
         // Scaling by a power of two loses no digit, and keeps squares from overflow.
         let exponent = exponent_to_one((target - position).abs().max_element());
         let given = ViewInputs { position, target, up: scaled(up), scale: times_power_of_two(1.0, exponent) };
-        let is_askew = forward.cross(given.up.try_normalize()?).length() > LEAST_SINE;
+        let is_askew = forward.cross(given.up.try_normalize()?).length() > MIN_SINE;
         is_askew.then(|| Self { given, axes: given.axes() })
     }
 

@@ -1,7 +1,7 @@
 //! Hits of packets by brackets that are computed first.
 
 use crate::geometry::ray::{Bracket, MISS, RayRange};
-use crate::geometry::ray_packet::{self, BEAM, Nearest, PACKET_SIZE, RayPacket, split};
+use crate::geometry::ray_packet::{self, BEAM, HitRecordMut, PACKET_SIZE, RayPacket, split};
 use crate::hittable::Sides;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::LANES;
@@ -14,7 +14,7 @@ pub fn closest_by_brackets(
     cpu: Cpu,
     count: usize,
     id: u64,
-    nearest: Nearest,
+    nearest: HitRecordMut,
     find: impl FnOnce(&[f64], (&mut [f64], &mut [f64])),
 ) -> bool {
     with_brackets(count, |near, far| {

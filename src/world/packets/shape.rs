@@ -11,7 +11,7 @@ use super::brackets::{closest_by_brackets, occluded_by_brackets, of_beams};
 use crate::coincidence::close;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use crate::geometry::ray_packet::{
-    Brackets, Nearest, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest, turned,
+    Brackets, HitRecordMut, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest, turned,
 };
 use crate::hittable::{Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides, TieBreaking};
 use crate::simd::cpu::{Cpu, kernels};
@@ -47,7 +47,7 @@ pub trait PacketIntersect: Send + Sync {
 
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
     /// any is in doubt. `id` is the object's index in the scene plus 1.
-    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: HitRecordMut) -> bool {
         closest_by_brackets(cpu, rays.len(), id, nearest, |ends, brackets| {
             self.brackets(cpu, rays, ends, brackets)
         })
@@ -250,7 +250,7 @@ impl<T: ScalarIntersect> PacketIntersect for T {
         brackets(cpu, self, rays, ends, near, far);
     }
 
-    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, id: u64, nearest: HitRecordMut) -> bool {
         if Self::BY_BEAMS {
             let rays = RayPacket { drift: RayError::NONE, ..rays };
             return closest_by_brackets(cpu, rays.len(), id, nearest, |ends, brackets| {
@@ -313,10 +313,10 @@ pub fn interact_each<T: Hittable>(
 
 kernels! {
     /// Merges a shape's hits into the nearest so far. Returns whether the order of any is in doubt.
-    fn closest_hits[T: ScalarIntersect](shape: &T, rays: RayPacket, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits[T: ScalarIntersect](shape: &T, rays: RayPacket, id: u64, nearest: HitRecordMut) -> bool {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
         let rays = RayPacket { drift: RayError::NONE, ..rays };
-        let Nearest { near, far, hit_ids, doubt } = nearest;
+        let HitRecordMut { near, far, hit_ids, doubt } = nearest;
         if count == LANES && shape.is_missed_by(rays) {
             doubt.fill(0);
             return false;

@@ -8,13 +8,13 @@ use std::sync::Arc;
 /// A list of values, each of one or several numbers or the name of an object, with a minimum and a maximum number of
 /// values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct List<T, const LEAST: usize, const MOST: usize>(pub Vec<T>);
+pub struct List<T, const MIN: usize, const MAX: usize>(pub Vec<T>);
 
-impl<T: Value, const LEAST: usize, const MOST: usize> Value for List<T, LEAST, MOST> {
+impl<T: Value, const MIN: usize, const MAX: usize> Value for List<T, MIN, MAX> {
     const TYPE: Type = T::TYPE;
     const EACH: &[&str] = T::EACH;
     const ARITY: Counts = match T::ARITY {
-        Counts::Of([group]) => Counts::List { group: *group, least: LEAST, most: MOST },
+        Counts::Of([group]) => Counts::List { group: *group, least: MIN, most: MAX },
         _ => panic!("each value of a list takes the same number of numbers"),
     };
 

@@ -27,7 +27,6 @@ enum Tag {
 pub struct Store {
     /// The parts of the scene that constructors may know.
     pub setting: Arc<Setting>,
-    /// The types of the entities.
     types: Vec<&'static Entity>,
     /// The values that are not numbers. Consecutive entities share them.
     data: Vec<Datum>,

@@ -79,7 +79,7 @@ fn balls(center: Point, radius: f64) -> [String; 5] {
 }
 
 /// Counts the pixels in which images of the same sphere differ. At its rim, where rounding decides, 1 of 500 may.
-fn alike(before: &str, center: Point, radius: f64, renderer: &Renderer) -> Looks {
+fn same_looks(before: &str, center: Point, radius: f64, renderer: &Renderer) -> Looks {
     let texts = balls(center, radius).map(|ball| format!("{before}{ball}\n"));
     let [first, others @ ..] = &texts;
     let truth = picture(first, renderer);
@@ -124,7 +124,7 @@ fn leak(random: &mut Random, renderer: &Renderer) -> Looks {
         camera(4.0, eye),
         numbers(lamp),
     );
-    let mut looks = alike(&before, center, radius, renderer);
+    let mut looks = same_looks(&before, center, radius, renderer);
     if away > radius {
         // No light enters the sphere.
         let text = format!("{before}{}\n", balls(center, radius)[0]);
@@ -147,7 +147,7 @@ fn mirror(random: &mut Random, renderer: &Renderer) -> Looks {
         round(random.between(0.2, 0.9)),
         numbers(moved(center, 0.5 * radius, random.direction())),
     );
-    alike(&before, center, radius, renderer)
+    same_looks(&before, center, radius, renderer)
 }
 
 fn glass(random: &mut Random, renderer: &Renderer) -> Looks {
@@ -159,7 +159,7 @@ fn glass(random: &mut Random, renderer: &Renderer) -> Looks {
         camera(8.0, [4.0, 3.0, 6.0]),
         round(random.between(0.2, 0.9)),
     );
-    alike(&before, center, radius, renderer)
+    same_looks(&before, center, radius, renderer)
 }
 
 /// Returns a direction of small integers that points up and toward the viewer.

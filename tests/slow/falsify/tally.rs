@@ -169,8 +169,8 @@ impl Tally {
     }
 
     fn keep(&mut self, kind: &'static str, number: u64, question: &Question, pixel: [usize; 2]) {
-        const MOST: usize = 3;
-        if self.kept.iter().filter(|(other, ..)| *other == kind).count() < MOST {
+        const MAX_KEPT: usize = 3;
+        if self.kept.iter().filter(|(other, ..)| *other == kind).count() < MAX_KEPT {
             let mesh = question.mesh.lines().map(|line| format!("# {line}\n"));
             let text = mesh.fold(question.text.clone(), |text, line| text + &line);
             self.kept.push((kind, number, text, pixel));

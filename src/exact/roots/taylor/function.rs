@@ -42,7 +42,7 @@ pub trait FunctionOnLine {
         false
     }
 
-    /// Returns the degree of the function, less than [`MOST`](crate::polynomial::MOST), if it is a polynomial.
+    /// Returns the degree of the function, less than [`MAX_COEFFICIENTS`](crate::polynomial::MAX_COEFFICIENTS), if it is a polynomial.
     /// Isolating the roots of a polynomial takes fewer operations.
     fn degree(&self) -> Option<usize> {
         None

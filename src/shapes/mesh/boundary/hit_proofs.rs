@@ -10,12 +10,12 @@ use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::dot;
-use tabray_world::accuracy::{Bounded, Exact};
+use tabray_world::accuracy::{Exact, NotClassic};
 use tabray_world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
 use tabray_world::geometry::orientation::side_of_plane;
 use tabray_world::geometry::sight::Line;
 
-impl<A: Bounded> Boundary<A> {
+impl<A: NotClassic> Boundary<A> {
     /// Tells whether two faces lie in one plane, where a line crosses both at the same place.
     fn are_in_plane(&self, one: usize, other: usize) -> bool {
         let plane = self.mesh.surface.corners(one);
@@ -87,7 +87,7 @@ impl<A: Bounded> Boundary<A> {
     }
 }
 
-impl<A: Bounded, F: Precise> HitProofs<F> for Boundary<A> {
+impl<A: NotClassic, F: Precise> HitProofs<F> for Boundary<A> {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
         self.first_along(line, leaves)
     }
@@ -119,7 +119,7 @@ impl<A: Bounded, F: Precise> HitProofs<F> for Boundary<A> {
     }
 }
 
-impl<A: Bounded> OverFootprint for Boundary<A> {
+impl<A: NotClassic> OverFootprint for Boundary<A> {
     fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {
         let leaves = leaves.map(|part| part >> 1);
         self.mesh.surface.hits_of_footprint::<A>(line, leaves, &mut |one, face| match self.depths[face] {

@@ -13,7 +13,7 @@ use super::winding::DIRECTIONS;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
-use tabray_world::accuracy::{Accuracy, Bounded, Exact, Strict};
+use tabray_world::accuracy::{Accuracy, Exact, NotClassic, Strict};
 use tabray_world::any_shape::AnyShape;
 use tabray_world::certify::{self, Assumption, Enclosure, Precision, Premise, ProofMethods};
 use tabray_world::coincidence::{CLOSE, ROUNDING, close};
@@ -45,7 +45,7 @@ impl Surface {
     }
 }
 
-impl<A: Bounded> Boundary<A> {
+impl<A: NotClassic> Boundary<A> {
     fn new(surface: &Arc<Surface>, depths: Arc<[Depth]>, accuracy: Accuracy) -> Self {
         Self { mesh: Mesh::new(surface.clone(), accuracy), depths }
     }
@@ -95,7 +95,7 @@ impl<A: Bounded> Boundary<A> {
     }
 }
 
-impl<A: Bounded> Hittable for Boundary<A> {
+impl<A: NotClassic> Hittable for Boundary<A> {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let surface = &self.mesh.surface;
         let leaves = if range.origin_side.is_none() {
@@ -173,7 +173,7 @@ impl<A: Bounded> Hittable for Boundary<A> {
 }
 
 /// A camera ray that meets an edge in `f64` arithmetic is decided with the numbers of the scene.
-impl<A: Bounded> ScalarIntersect for Boundary<A> {
+impl<A: NotClassic> ScalarIntersect for Boundary<A> {
     type Author = Self;
 
     fn author(&self) -> &Self {
@@ -198,7 +198,7 @@ impl<A: Bounded> ScalarIntersect for Boundary<A> {
     }
 }
 
-impl<A: Bounded> HitQueries for Boundary<A> {
+impl<A: NotClassic> HitQueries for Boundary<A> {
     fn is_on_surface(&self, at: DVec3, error: f64) -> bool {
         self.is_on_surface(at, error)
     }

@@ -95,7 +95,7 @@ pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path,
 }
 
 /// The maximum number of words in a name with blanks.
-const MOST_WORDS: usize = 16;
+const MAX_WORDS: usize = 16;
 
 /// Returns the names that follow `mtllib`. Several words form one name if a file with that name exists.
 fn named(names: &[u8], folder: &Path) -> Vec<String> {
@@ -105,7 +105,7 @@ fn named(names: &[u8], folder: &Path) -> Vec<String> {
     let words: Vec<_> = words.collect();
     let (mut rest, mut found) = (&words[..], Vec::new());
     while !rest.is_empty() {
-        let joined = (2..=rest.len().min(MOST_WORDS)).rev().map(|count| (count, rest[..count].join(" ")));
+        let joined = (2..=rest.len().min(MAX_WORDS)).rev().map(|count| (count, rest[..count].join(" ")));
         let (count, name) =
             joined.into_iter().find(|(_, name)| folder.join(name).is_file()).unwrap_or((1, rest[0].clone()));
         rest = &rest[count..];

@@ -33,7 +33,7 @@ const COLOUR: Range<usize> = 6..9;
 const UV: Range<usize> = 9..11;
 
 /// The maximum light of a colour. Products of larger ones may overflow.
-const MOST_LIGHT: f64 = 1e6;
+const MAX_LIGHT: f64 = 1e6;
 
 /// The number of numbers that are read of a vertex.
 const NUMBERS_OF_VERTEX: usize = 11;
@@ -309,7 +309,7 @@ impl Section {
             }
             _ => {
                 if channel > 0.0 {
-                    channel.min(MOST_LIGHT) as f32
+                    channel.min(MAX_LIGHT) as f32
                 } else {
                     0.0
                 }

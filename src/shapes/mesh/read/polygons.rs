@@ -14,7 +14,7 @@ const FLAT: f64 = 0.1;
 const STRAIGHT: f64 = 1e-9;
 
 /// The maximum number of pairs of corners of concave polygons in a file. Cutting these takes up to ten seconds.
-const MOST_PAIRS: u64 = 1 << 32;
+const MAX_PAIRS: u64 = 1 << 32;
 
 /// The faces of a file that are not triangles.
 #[derive(Default)]
@@ -70,7 +70,7 @@ impl Polygons {
         };
         let found = parallel::map_ranges(self.fans.len(), 2, &|range| range.filter_map(find).collect());
         let bent = found.iter().filter(|found| found.is_bent).count();
-        let mut left = MOST_PAIRS;
+        let mut left = MAX_PAIRS;
         let dented: Vec<_> = found
             .into_iter()
             .filter_map(|found| Some((found.polygon, found.dented?)))

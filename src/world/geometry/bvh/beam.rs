@@ -19,7 +19,7 @@ const STEEPEST: f64 = 1e150;
 
 /// The slack of rays with coordinates that are all 0, in world units. It is not 0, and its product with [`STEEPEST`] is
 /// large.
-const LEAST_SLACK: f64 = 1e-100;
+const MIN_SLACK: f64 = 1e-100;
 
 /// Rays that are tested together: bounds of their origins and of their directions.
 ///
@@ -88,7 +88,7 @@ impl Beam {
     #[inline(always)]
     fn between([low, high]: [DVec3; 2], [mut least, mut greatest]: [DVec3; 2], drift: RayError) -> Self {
         let reach = larger(low.abs().max_element(), high.abs().max_element());
-        let slack = SLACK * reach + LEAST_SLACK + drift.origin;
+        let slack = SLACK * reach + MIN_SLACK + drift.origin;
         if drift.dir > 0.0 {
             (least, greatest) = (least - drift.dir, greatest + drift.dir);
         }

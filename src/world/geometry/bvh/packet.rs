@@ -69,7 +69,6 @@ kernels! {
 struct Search<'s, 'v> {
     tree: &'s Bvh,
     stack: &'s mut Vec<Ahead>,
-    /// The rays of the packet.
     rays: RayPacket<'s>,
     drift: RayError,
     order: Order,

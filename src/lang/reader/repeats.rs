@@ -1,4 +1,4 @@
-//! The rounds of a scene's `repeat`s, with their names and numbers.
+//! The `repeat`s of a scene, with the names and the numbers of their rounds.
 
 use super::fault::{Fault, Place};
 use super::guesses::Table;
@@ -14,15 +14,15 @@ use tabray_core::scene::value::Type;
 
 /// The maximum number of rounds and repeated entities of a scene, and the maximum length of the texts of all rounds, in
 /// bytes.
-const MOST: usize = 1_000_000;
-const MOST_BYTES: usize = 1 << 28;
+const MAX_ROUNDS: usize = 1_000_000;
+const MAX_BYTES: usize = 1 << 28;
 
 /// The maximum nesting of `repeat`s. With two or more rounds each, 20 of them are already too many.
-const DEEPEST: usize = 32;
+const MAX_DEPTH: usize = 32;
 
-/// The rounds of a scene's `repeat`s.
+/// The `repeat`s of a scene.
 #[derive(Default)]
-pub struct Rounds<'a> {
+pub struct Repeats<'a> {
     /// The numbers of the scene, and of the rounds.
     numbers: Numbers<'a>,
     /// The values set beside the text.
@@ -51,7 +51,7 @@ struct Round {
     entities: HashSet<String>,
 }
 
-impl<'a> Rounds<'a> {
+impl<'a> Repeats<'a> {
     /// Begins with a text in the notes' syntax.
     pub fn of(text: &'a str, sets: Sets<'a>) -> Self {
         Self { numbers: Numbers::of(text), sets, ..Self::default() }
@@ -124,23 +124,23 @@ impl<'a> Rounds<'a> {
         report: &mut Report<'_>,
     ) -> bool {
         let names = self.numbers.len();
-        let is_too_deep = self.open.len() >= DEEPEST;
+        let is_too_deep = self.open.len() >= MAX_DEPTH;
         if is_too_deep {
             let message = format!("`repeat {}` is nested too deep", name.text);
-            let help = format!("a `repeat` can be nested at most {DEEPEST} deep");
+            let help = format!("a `repeat` can be nested at most {MAX_DEPTH} deep");
             report.add(Fault::error(name.place.clone(), message).help(help));
         }
         let number = self.numbers.number(count, report);
         let rounds = number.map_or(0.0, |number| number);
-        if rounds < 0.0 || rounds.fract() != 0.0 || rounds > MOST as f64 {
+        if rounds < 0.0 || rounds.fract() != 0.0 || rounds > MAX_ROUNDS as f64 {
             let message =
                 format!("`repeat {}` cannot have {} rounds", name.text, tabray_core::text::shortest(rounds));
-            let help = format!("the number of rounds is a whole number from 0 to {MOST}");
+            let help = format!("the number of rounds is a whole number from 0 to {MAX_ROUNDS}");
             report.add(Fault::error(count.place.clone(), message).help(help));
         }
         self.numbers.define(name, Some(0.0), report);
         let count =
-            if number.is_some() && rounds >= 0.0 && rounds <= MOST as f64 { rounds as u64 } else { 1 };
+            if number.is_some() && rounds >= 0.0 && rounds <= MAX_ROUNDS as f64 { rounds as u64 } else { 1 };
         let place = name.place.clone();
         self.open.push(Round { place, index: 0, count, names, start, errors, entities });
         count > 0 && !is_too_deep
@@ -178,12 +178,12 @@ impl<'a> Rounds<'a> {
     /// Counts a round, and reports an error if there are too many.
     fn has_room(&mut self, report: &mut Report<'_>) -> bool {
         self.count += 1;
-        let is_there = self.count <= MOST && self.bytes <= MOST_BYTES;
+        let is_there = self.count <= MAX_ROUNDS && self.bytes <= MAX_BYTES;
         if !is_there {
             let place = self.innermost();
             let help = format!(
-                "a scene has at most {MOST} rounds and repeated entities, and at most {} MiB of repeated text",
-                MOST_BYTES >> 20
+                "a scene has at most {MAX_ROUNDS} rounds and repeated entities, and at most {} MiB of repeated text",
+                MAX_BYTES >> 20
             );
             report.add(Fault::error(place, "the scene repeats too much").help(help));
         }
