@@ -2,34 +2,26 @@
 
 use crate::arrays::{Rows, Vectors, View, numbers};
 use crate::work::{How, Progress};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use numpy::ndarray::{Array2, ArrayView1};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
-use tabray_core::query::{Answer, Crossing, Query, QueryRay, Surroundings};
+use tabray_core::query::{Query, QueryRay};
 use tabray_core::scene::model::Model;
 use tabray_core::text;
-use tabray_core::world::certify::Precision;
-use tabray_rays::hits::answers::code;
+pub use tabray_rays::hits::Asked;
+use tabray_rays::hits::columns::{self, Answered, Cell};
+use tabray_rays::hits::{Ray, answers};
 
 /// The number of packets that are answered at a time: enough for all threads, and little memory.
 const TOGETHER: usize = 256;
 
 /// The number of rays that are answered with 237 bits between two checks for a stop: about a tenth of a second.
 const TIGHT: usize = 16;
-
-/// How rays are answered.
-#[derive(Clone, Copy)]
-pub struct Asked {
-    /// Whether nothing is proven.
-    pub fast: bool,
-    /// Whether bounds are narrowed with 237 bits.
-    pub tight: bool,
-}
 
 /// The rays of a query.
 pub struct Rays<'py> {
@@ -75,7 +67,7 @@ impl<'py> Rays<'py> {
 
 impl RayView<'_> {
     /// Returns a ray with the t of its end, or a message about its fault.
-    fn ray(&self, index: usize) -> Result<(QueryRay, f64), String> {
+    fn ray(&self, index: usize) -> Result<Ray, String> {
         let (origin, dir) = (self.origins.row(index), self.directions.row(index));
         let ray = QueryRay::new(origin, dir).ok_or_else(|| match dir == DVec3::ZERO {
             true => format!("the direction of ray {index} is 0: a ray goes somewhere"),
@@ -91,12 +83,12 @@ impl RayView<'_> {
 }
 
 /// Passes the results of `packet` for all packets of rays to `sink`, in the order of the rays. `packet` takes the index
-/// of the packet's first ray, the rays, and the t at which each ray ends.
+/// of the packet's first ray, and the rays.
 fn in_packets<T: Send>(
     progress: &Progress,
     rays: &RayView,
     size: usize,
-    packet: impl Fn(usize, &[QueryRay], &[f64]) -> Vec<T> + Sync,
+    packet: impl Fn(u64, &[Ray]) -> Vec<T> + Sync,
     mut sink: impl FnMut(T),
 ) -> Result<(), String> {
     let answered = |first: usize| -> Result<Vec<T>, String> {
@@ -104,9 +96,8 @@ fn in_packets<T: Send>(
             return Ok(Vec::new());
         }
         let range = first..rays.count.min(first + size);
-        let (of, ends): (Vec<_>, Vec<_>) =
-            range.clone().map(|index| rays.ray(index)).collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
-        let answers = packet(first, &of, &ends);
+        let of: Vec<_> = range.clone().map(|index| rays.ray(index)).collect::<Result<_, _>>()?;
+        let answers = packet(first as u64, &of);
         progress.step(range.len());
         Ok(answers)
     };
@@ -127,101 +118,105 @@ fn packet_size(is_tight: bool) -> usize {
     if is_tight { TIGHT } else { PACKET_SIZE }
 }
 
-/// The answer to one ray, with the surface at its hit.
-type Told = (Answer, Option<Surroundings>);
-
-/// Adds the surface to an answer, and names the object by its number.
-fn told(query: &Query, ray: &QueryRay, answer: Answer) -> Told {
-    let surface = query.surroundings(ray, &answer);
-    (Answer { object: answer.object.map(|object| query.number(object)), ..answer }, surface)
-}
-
 /// The hits of rays: one array for each property, with one entry for each ray. An entry without a value is -1 or NaN.
 #[pyclass(frozen, subclass, module = "tabray", get_all)]
 pub struct Hits {
     /// The answer: a `Verdict`. uint8.
-    verdict: Py<PyArray1<u8>>,
+    verdict: Py<PyAny>,
     /// The number of bits of the proof: 53 or 237; 0 without a proof. uint8.
-    proof: Py<PyArray1<u8>>,
+    proof: Py<PyAny>,
     /// The object, an index of `Scene.objects`. int32.
-    object: Py<PyArray1<i32>>,
+    object: Py<PyAny>,
     /// The face of the object, where it has several. int32.
-    face: Py<PyArray1<i32>>,
+    face: Py<PyAny>,
     /// The t of the hit, in lengths of the ray's direction.
-    t: Py<PyArray1<f64>>,
+    t: Py<PyAny>,
     /// A lower bound of the real t; -inf without a proof.
-    t_low: Py<PyArray1<f64>>,
+    t_low: Py<PyAny>,
     /// An upper bound of the real t; inf without a proof.
-    t_high: Py<PyArray1<f64>>,
+    t_high: Py<PyAny>,
     /// The distance in world units, rounded.
-    distance: Py<PyArray1<f64>>,
+    distance: Py<PyAny>,
     /// The point, rounded. (n, 3).
-    point: Py<PyArray2<f64>>,
+    point: Py<PyAny>,
     /// The unit normal of the shape there, rounded. (n, 3).
-    normal: Py<PyArray2<f64>>,
+    normal: Py<PyAny>,
     /// The coordinates u and v there, where the shape has some, rounded. (n, 2).
-    uv: Py<PyArray2<f64>>,
+    uv: Py<PyAny>,
 }
 
-/// The columns of the answers.
-#[derive(Default)]
-struct Columns {
-    verdict: Vec<u8>,
-    proof: Vec<u8>,
-    object: Vec<i32>,
-    face: Vec<i32>,
-    t: Vec<f64>,
-    t_low: Vec<f64>,
-    t_high: Vec<f64>,
-    distance: Vec<f64>,
-    point: Vec<f64>,
-    normal: Vec<f64>,
-    uv: Vec<f64>,
+/// A column of answers.
+enum Array {
+    Words(Vec<u8>),
+    Indices(Vec<i32>),
+    Numbers(Vec<f64>),
+    /// Rows of as many numbers as this.
+    Vectors(Vec<f64>, usize),
 }
+
+impl Array {
+    /// Begins a column of values like this one.
+    fn like(cell: Cell) -> Self {
+        match cell {
+            Cell::Word(_) => Self::Words(Vec::new()),
+            Cell::Index(_) => Self::Indices(Vec::new()),
+            Cell::Number(_) => Self::Numbers(Vec::new()),
+            Cell::Vector(_, width) => Self::Vectors(Vec::new(), width),
+        }
+    }
+
+    fn push(&mut self, cell: Cell) {
+        match (self, cell) {
+            (Self::Words(all), Cell::Word(one)) => all.push(one),
+            (Self::Indices(all), Cell::Index(one)) => all.push(one),
+            (Self::Numbers(all), Cell::Number(one)) => all.push(one),
+            (Self::Vectors(all, width), Cell::Vector(one, _)) => all.extend_from_slice(&one[..*width]),
+            _ => unreachable!("a column has values of one kind"),
+        }
+    }
+
+    fn into_array(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        Ok(match self {
+            Self::Words(all) => all.into_pyarray(py).into_any().unbind(),
+            Self::Indices(all) => all.into_pyarray(py).into_any().unbind(),
+            Self::Numbers(all) => all.into_pyarray(py).into_any().unbind(),
+            Self::Vectors(all, width) => {
+                let rows = Array2::from_shape_vec((all.len() / width, width), all);
+                let rows = rows.map_err(|error| PyValueError::new_err(error.to_string()))?;
+                rows.into_pyarray(py).into_any().unbind()
+            }
+        })
+    }
+}
+
+/// The columns of answers.
+struct Columns(Vec<Array>);
 
 impl Columns {
-    fn add(&mut self, (answer, surface): Told) {
-        let index = |index: Option<u32>| index.map_or(-1, |index| index as i32);
-        let vector = |vector: Option<DVec3>| vector.unwrap_or(DVec3::NAN).to_array();
-        self.verdict.push(code(answer.verdict));
-        self.proof.push(match answer.proof {
-            None => 0,
-            Some(Precision::Double) => 53,
-            Some(Precision::Octuple) => 237,
-        });
-        self.object.push(index(answer.object.map(|object| object as u32)));
-        self.face.push(index(surface.and_then(|surface| surface.face)));
-        self.t.push(answer.t);
-        self.t_low.push(answer.bounds.low);
-        self.t_high.push(answer.bounds.high);
-        self.distance.push(answer.distance);
-        self.point.extend(vector(surface.map(|surface| surface.point)));
-        self.normal.extend(vector(surface.map(|surface| surface.normal)));
-        let uv = surface.and_then(|surface| surface.uv);
-        self.uv.extend(uv.unwrap_or(DVec2::NAN).to_array());
+    fn new() -> Self {
+        Self(columns::of_arrays().map(|(_, absent)| Array::like(absent)).collect())
+    }
+
+    fn add(&mut self, answer: &Answered) {
+        self.0.iter_mut().zip(answer.cells()).for_each(|(array, cell)| array.push(cell));
     }
 
     fn into_hits(self, py: Python<'_>) -> PyResult<Hits> {
-        fn array<T: numpy::Element>(py: Python<'_>, of: Vec<T>) -> Py<PyArray1<T>> {
-            of.into_pyarray(py).unbind()
-        }
-        let rows = |of: Vec<f64>, width: usize| {
-            let rows = Array2::from_shape_vec((of.len() / width, width), of);
-            rows.map(|rows| rows.into_pyarray(py).unbind())
-                .map_err(|error| PyValueError::new_err(error.to_string()))
-        };
+        let arrays = self.0.into_iter().map(|array| array.into_array(py)).collect::<PyResult<Vec<_>>>()?;
+        let mut arrays: BTreeMap<_, _> = columns::of_arrays().map(|(name, _)| name).zip(arrays).collect();
+        let mut of = |name: &'static str| arrays.remove(name).ok_or_else(|| PyKeyError::new_err(name));
         Ok(Hits {
-            verdict: array(py, self.verdict),
-            proof: array(py, self.proof),
-            object: array(py, self.object),
-            face: array(py, self.face),
-            t: array(py, self.t),
-            t_low: array(py, self.t_low),
-            t_high: array(py, self.t_high),
-            distance: array(py, self.distance),
-            point: rows(self.point, 3)?,
-            normal: rows(self.normal, 3)?,
-            uv: rows(self.uv, 2)?,
+            verdict: of("verdict")?,
+            proof: of("proof")?,
+            object: of("object")?,
+            face: of("face")?,
+            t: of("t")?,
+            t_low: of("t_low")?,
+            t_high: of("t_high")?,
+            distance: of("distance")?,
+            point: of("point")?,
+            normal: of("normal")?,
+            uv: of("uv")?,
         })
     }
 }
@@ -237,17 +232,13 @@ pub struct Crossings {
 }
 
 /// Finds the first hits of rays.
-pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: Asked, how: &How) -> PyResult<Hits> {
+pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: &Asked, how: &How) -> PyResult<Hits> {
     let rays = rays.view();
     let columns = how.run(py, rays.count, |_, progress| {
-        let (query, mut columns) = (Query::new(model), Columns::default());
-        let packet = |_: usize, of: &[QueryRay], ends: &[f64]| -> Vec<Told> {
-            let answers = if asked.fast { query.traced(of) } else { query.proven(of, asked.tight) };
-            let ended = answers.into_iter().zip(ends).map(|(answer, end)| answer.within(*end));
-            ended.zip(of).map(|(answer, ray)| told(&query, ray, answer)).collect()
-        };
-        let size = packet_size(asked.tight);
-        in_packets(progress, &rays, size, packet, |told| columns.add(told)).map(|()| columns)
+        let (query, mut columns) = (Query::new(model), Columns::new());
+        let packet = |first: u64, of: &[Ray]| answers(&query, asked, first, of);
+        let add = |answer: Answered| columns.add(&answer);
+        in_packets(progress, &rays, packet_size(asked.tight), packet, add).map(|()| columns)
     })?;
     columns.map_err(PyValueError::new_err)?.into_hits(py)
 }
@@ -257,27 +248,21 @@ pub fn crossings(
     py: Python<'_>,
     model: &Model,
     rays: &Rays,
-    is_tight: bool,
+    tight: bool,
     how: &How,
 ) -> PyResult<Py<Crossings>> {
     let rays = rays.view();
     let all = how.run(py, rays.count, |_, progress| {
-        let (query, mut columns) = (Query::new(model), Columns::default());
+        let (query, mut columns) = (Query::new(model), Columns::new());
         let (mut numbers, mut enters) = (Vec::new(), Vec::new());
-        let packet = |first: usize, of: &[QueryRay], ends: &[f64]| {
-            let of_ray = |(number, (ray, end)): (usize, (&QueryRay, &f64))| {
-                let crossings = query.crossings(ray, *end, is_tight).into_iter();
-                let one = |of: Crossing| (number, of.enters, told(&query, ray, of.answer));
-                crossings.map(one).collect::<Vec<_>>()
-            };
-            (first..).zip(of.iter().zip(ends)).flat_map(of_ray).collect()
+        let asked = Asked { tight, all: true, ..Asked::default() };
+        let packet = |first: u64, of: &[Ray]| answers(&query, &asked, first, of);
+        let add = |answer: Answered| {
+            numbers.push(answer.ray.map_or(-1, |ray| ray as i64));
+            enters.push(answer.enters.map_or(-1, i8::from));
+            columns.add(&answer);
         };
-        let add = |(number, is_entered, told): (usize, Option<bool>, Told)| {
-            numbers.push(number as i64);
-            enters.push(is_entered.map_or(-1, i8::from));
-            columns.add(told);
-        };
-        in_packets(progress, &rays, packet_size(is_tight), packet, add).map(|()| (numbers, enters, columns))
+        in_packets(progress, &rays, packet_size(tight), packet, add).map(|()| (numbers, enters, columns))
     })?;
     let (ray, enters, columns) = all.map_err(PyValueError::new_err)?;
     let (ray, enters) = (ray.into_pyarray(py).unbind(), enters.into_pyarray(py).unbind());
@@ -295,9 +280,12 @@ pub fn occluded<'py>(
     let rays = rays.view();
     let may_be = how.run(py, rays.count, |_, progress| {
         let (query, mut may_be) = (Query::new(model), Vec::new());
-        let packet = |_: usize, of: &[QueryRay], ends: &[f64]| match fast {
-            true => query.traced(of).iter().zip(ends).map(|(answer, end)| answer.t < *end).collect(),
-            false => query.occluded(of, ends),
+        let packet = |_: u64, rays: &[Ray]| {
+            let (of, ends): (Vec<_>, Vec<_>) = rays.iter().cloned().unzip();
+            match fast {
+                true => query.traced(&of).iter().zip(&ends).map(|(answer, end)| answer.t < *end).collect(),
+                false => query.occluded(&of, &ends),
+            }
         };
         in_packets(progress, &rays, PACKET_SIZE, packet, |is_hit| may_be.push(is_hit)).map(|()| may_be)
     })?;
@@ -307,11 +295,11 @@ pub fn occluded<'py>(
 #[pymethods]
 impl Hits {
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        self.verdict.bind(py).as_any().len()
+        self.verdict.bind(py).len()
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let verdicts = self.verdict.bind(py).try_readonly()?;
+        let verdicts = self.verdict.bind(py).cast::<PyArray1<u8>>()?.try_readonly()?;
         let verdicts = verdicts.as_array();
         let count = |of: u8| verdicts.iter().filter(|verdict| **verdict == of).count();
         let named = ["miss", "hit", "edge", "tie", "undecided"];

@@ -97,7 +97,13 @@ impl Mesh {
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Hits> {
         let rays = Rays::of(origins, directions, t_max)?;
-        hits::hits(py, &self.model, &rays, Asked { fast, tight }, &How { threads, progress })
+        hits::hits(
+            py,
+            &self.model,
+            &rays,
+            &Asked { fast, tight, ..Asked::default() },
+            &How { threads, progress },
+        )
     }
 
     /// Finds the crossings of rays and the mesh, as `Scene.crossings` does.

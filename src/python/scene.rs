@@ -232,7 +232,7 @@ impl Scene {
     ) -> PyResult<Hits> {
         let rays = Rays::of(origins, directions, t_max)?;
         let model = self.with(py, Accuracy::Exact)?;
-        hits::hits(py, &model, &rays, Asked { fast, tight }, &How { threads, progress })
+        hits::hits(py, &model, &rays, &Asked { fast, tight, ..Asked::default() }, &How { threads, progress })
     }
 
     /// Finds the crossings of each ray with surfaces before `t_max`, in their order along the ray. The last entry of each ray has

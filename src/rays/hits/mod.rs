@@ -2,13 +2,15 @@
 //! JSON lines or a NumPy array.
 
 pub mod answers;
+pub mod columns;
 pub mod hard;
 pub mod judge;
 mod npy;
 pub mod rays;
 pub mod theirs;
 
-use answers::{AnswerFormat, Answered};
+use answers::AnswerFormat;
+use columns::Answered;
 use rayon::prelude::*;
 use rays::{BadRay, RayReader, RayRow};
 use std::io::{self, Write};
@@ -39,6 +41,12 @@ pub struct Asked {
     pub skip_bad: bool,
 }
 
+impl Default for Asked {
+    fn default() -> Self {
+        Self { fast: false, tight: false, all: false, any: false, t_max: f64::INFINITY, skip_bad: false }
+    }
+}
+
 /// The numbers of rays that were answered, and of those that were left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -58,7 +66,7 @@ pub enum Ended {
 }
 
 /// A ray of a query, with the t of its end.
-type Ray = (QueryRay, f64);
+pub type Ray = (QueryRay, f64);
 
 /// Answers all rays of a reader, in their order. The answers depend on the rays alone, not on the threads. `step`
 /// gets the number of rays that are done.
@@ -138,28 +146,35 @@ fn answer(
     (format, out): (&AnswerFormat, &mut dyn Write),
 ) -> io::Result<()> {
     let packet = |(index, rays): (usize, &[Ray])| -> io::Result<Vec<u8>> {
-        if asked.all {
-            let first = first + (index * PACKET_SIZE) as u64;
-            let of_ray = |(number, (ray, end)): (u64, &Ray)| {
-                let of = |Crossing { answer, enters }: Crossing| {
-                    let surface = query.surroundings(ray, &answer);
-                    Answered { query, ray: Some(number), answer, enters, surface }
-                };
-                query.crossings(ray, *end, asked.tight).into_iter().map(of).collect::<Vec<_>>()
-            };
-            return format.written((first..).zip(rays).flat_map(of_ray));
-        }
-        let (of, ends): (Vec<_>, Vec<_>) = rays.iter().cloned().unzip();
-        let answers = if asked.fast { query.traced(&of) } else { query.proven(&of, asked.tight) };
-        let ended = answers.into_iter().zip(&ends).map(|(answer, end)| match asked.any {
-            true => answer.any_within(*end),
-            false => answer.within(*end),
-        });
-        format.written(of.iter().zip(ended).map(|(ray, answer)| {
-            let surface = query.surroundings(ray, &answer);
-            Answered { query, ray: None, answer, enters: None, surface }
-        }))
+        format.written(&answers(query, asked, first + (index * PACKET_SIZE) as u64, rays))
     };
     let packets: Vec<_> = renderer.run(|| rays.par_chunks(PACKET_SIZE).enumerate().map(packet).collect());
     packets.into_iter().try_for_each(|bytes| out.write_all(&bytes?))
+}
+
+/// Returns the answers to a packet of rays; `first` is the number of the first ray.
+pub fn answers<'q, 'm>(
+    query: &'q Query<'m>,
+    asked: &Asked,
+    first: u64,
+    rays: &[Ray],
+) -> Vec<Answered<'q, 'm>> {
+    let with_surface = |of: &QueryRay, ray: Option<u64>, Crossing { answer, enters }: Crossing| {
+        let surface = query.surroundings(of, &answer);
+        Answered { query, ray, answer, enters, surface }
+    };
+    if asked.all {
+        let of_ray = |(number, (ray, end)): (u64, &Ray)| {
+            let crossings = query.crossings(ray, *end, asked.tight).into_iter();
+            crossings.map(|one| with_surface(ray, Some(number), one)).collect::<Vec<_>>()
+        };
+        return (first..).zip(rays).flat_map(of_ray).collect();
+    }
+    let of: Vec<_> = rays.iter().map(|(ray, _)| ray.clone()).collect();
+    let answers = if asked.fast { query.traced(&of) } else { query.proven(&of, asked.tight) };
+    let ended = answers.into_iter().zip(rays).map(|(answer, (ray, end))| {
+        let answer = if asked.any { answer.any_within(*end) } else { answer.within(*end) };
+        with_surface(ray, None, Crossing { answer, enters: None })
+    });
+    ended.collect()
 }

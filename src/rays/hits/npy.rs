@@ -1,4 +1,4 @@
-//! NumPy arrays of rays and of answers, in NumPy's own format ("NPY format", versions 1 to 3). The crates that read
+//! NumPy arrays of rays, in NumPy's own format ("NPY format", versions 1 to 3). The crates that read
 //! it bring a parser of Python's literals that needs a C compiler.
 
 use std::io::{self, BufRead, Read};
@@ -108,46 +108,6 @@ fn value<'h>(head: &'h str, key: &str) -> Option<&'h str> {
     let rest = rest.trim_start();
     let end = if rest.starts_with('(') { rest.find(')')? + 1 } else { rest.find([',', '}'])? };
     Some(rest[..end].trim())
-}
-
-/// The type of an answer's record, as NumPy writes it.
-pub(super) const RECORD: &str = "[('verdict', '|u1'), ('proof', '|u1'), ('object', '<i4'), ('face', '<i4'), ('t', '<f8'), \
-    ('t_low', '<f8'), ('t_high', '<f8'), ('distance', '<f8'), ('point', '<f8', (3,)), ('normal', '<f8', (3,)), \
-    ('uv', '<f8', (2,))]";
-
-/// An answer as a record of an array.
-pub(super) struct Record {
-    pub verdict: u8,
-    pub proof: u8,
-    pub object: i32,
-    pub face: i32,
-    /// t, its bounds, and the distance.
-    pub along: [f64; 4],
-    pub point: [f64; 3],
-    pub normal: [f64; 3],
-    pub uv: [f64; 2],
-}
-
-impl Record {
-    /// The number of bytes of a record: two bytes, two integers, and twelve other numbers.
-    const SIZE: usize = 2 + 2 * 4 + 12 * 8;
-
-    /// Appends the bytes of the record.
-    pub fn write(&self, out: &mut Vec<u8>) {
-        let Self {
-            along: [t, low, high, distance], point: [x, y, z], normal: [nx, ny, nz], uv: [u, v], ..
-        } = *self;
-        let mut bytes = [0; Self::SIZE];
-        bytes[..2].copy_from_slice(&[self.verdict, self.proof]);
-        bytes[2..6].copy_from_slice(&self.object.to_le_bytes());
-        bytes[6..10].copy_from_slice(&self.face.to_le_bytes());
-        let numbers = [t, low, high, distance, x, y, z, nx, ny, nz, u, v];
-        let (places, _) = bytes[10..].as_chunks_mut();
-        for (place, number) in places.iter_mut().zip(&numbers) {
-            *place = number.to_le_bytes();
-        }
-        out.extend_from_slice(&bytes);
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::files::{name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
 use super::model;
-use crate::hits::answers;
+use crate::hits::columns;
 use crate::hits::judge::{self, Finding, Judged, Report};
 use crate::hits::theirs::TheirReader;
 use glam::DVec3;
@@ -180,7 +180,7 @@ fn words(judged: &Judged, model: &Model) -> [String; 2] {
     let of = object.map_or(String::new(), |object| format!(" of `{}`", model.objects[object].args.name()));
     let ours = match verdict {
         Verdict::Hit => format!("t {}{of}", shortest(t)),
-        _ => format!("{}{of}", answers::name(verdict)),
+        _ => format!("{}{of}", columns::verdict(verdict).0),
     };
     [theirs, ours]
 }
