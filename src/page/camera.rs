@@ -9,7 +9,7 @@ use tabray_core::render::trace;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::store::Record;
 use tabray_core::text;
-use tabray_editor::{self as editor, View};
+use tabray_editor::{self as editor, LookAt, View};
 use tabray_lang::registry::Registry;
 
 /// The state of a camera that is about to be moved.
@@ -71,6 +71,20 @@ pub fn state<'s>(registry: &Registry, shown: Shown<'s>) -> Result<CameraState<'s
     Ok(CameraState { name, stand, is_window: navigation::is_window(&camera), turns })
 }
 
+/// Turns the camera of this name into a `look_at`.
+///
+/// # Errors
+/// Returns why it cannot become one.
+pub fn turned(view: &View, name: &str) -> Result<LookAt, String> {
+    let camera = view.entity(name).ok_or_else(|| elsewhere(name))?;
+    let turned = editor::look_at(view, &camera.place).ok_or("only a `camera` can become a `look_at`")?;
+    turned.map_err(|reason| format!("the camera cannot become a `look_at`: {reason}"))
+}
+
+fn elsewhere(name: &str) -> String {
+    format!("`{name}` is repeated or included: change the text")
+}
+
 /// Returns why a camera cannot be moved; `None` where it can be.
 fn fixed(view: &View, camera: &Record) -> Option<String> {
     let (name, args) = (camera.name(), camera.args());
@@ -82,7 +96,7 @@ fn fixed(view: &View, camera: &Record) -> Option<String> {
         ));
     }
     if view.entity(name).is_none() {
-        return Some(format!("`{name}` is repeated or included: change the text"));
+        return Some(elsewhere(name));
     }
     let reason = |attribute| Some((attribute, fields::fixed(view, name, attribute)?));
     moves.find_map(reason).map(|(attribute, reason)| {

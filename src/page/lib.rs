@@ -12,6 +12,7 @@ pub mod fuzz;
 pub mod html;
 pub mod navigation;
 pub mod numbers;
+pub mod queries;
 pub mod trial_values;
 #[cfg(feature = "commands")]
 mod watch;

@@ -13,11 +13,20 @@ use tabray_lang::syntax::Syntax;
 #[derive(Deserialize)]
 pub struct Try {
     /// The name of the object.
-    name: String,
+    pub name: String,
     /// The name of the attribute.
-    attribute: String,
+    pub attribute: String,
     /// All its values, as a scene writes them.
-    values: Vec<String>,
+    pub values: Vec<String>,
+}
+
+impl Try {
+    /// Reads what a page sends; `None` if the values are not numbers.
+    pub fn of(body: &[u8]) -> Option<Self> {
+        let tried: Self = serde_json::from_slice(body).ok()?;
+        let are_numbers = tried.values.iter().all(|value| value.parse::<f64>().is_ok());
+        (are_numbers && !tried.values.is_empty()).then_some(tried)
+    }
 }
 
 /// An attribute, as a page names it.
@@ -53,9 +62,9 @@ impl TrialValues {
 
     /// Tries out other values of an attribute. Returns `None` if they are not numbers.
     pub fn set(&self, body: &[u8]) -> Option<()> {
-        let Try { name, attribute, values } = serde_json::from_slice(body).ok()?;
-        let are_numbers = values.iter().all(|value| value.parse::<f64>().is_ok()) && !values.is_empty();
-        are_numbers.then(|| self.all().insert((name, attribute), values)).map(drop)
+        let Try { name, attribute, values } = Try::of(body)?;
+        self.all().insert((name, attribute), values);
+        Some(())
     }
 
     /// Tries out other numbers of an attribute.

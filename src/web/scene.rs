@@ -1,7 +1,7 @@
 //! A scene of a page: a text without files around it.
 
 use crate::text::{NAME, view, without_files};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use tabray_core::files::{held, plain};
@@ -9,13 +9,13 @@ use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;
 use tabray_core::text::list;
-use tabray_editor as editor;
 use tabray_lang::reader::{self, Places, ReadOptions, Report};
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
-use tabray_page::camera::MoveRequest;
+use tabray_page::camera::{self, MoveRequest};
 use tabray_page::display::Display;
-use tabray_page::{Shown, lines, trial_values};
+use tabray_page::trial_values::{self, Try};
+use tabray_page::{Shown, lines};
 
 /// The maximum number of pixels of a picture.
 const MAX_PIXELS: usize = 1 << 22;
@@ -53,14 +53,6 @@ pub struct Unread {
     report: String,
     /// The files that the scene names and the page does not have.
     lacking: Vec<String>,
-}
-
-/// Values to write into the text.
-#[derive(Deserialize)]
-struct Try {
-    name: String,
-    attribute: String,
-    values: Vec<String>,
 }
 
 impl Scene {
@@ -137,11 +129,7 @@ impl Scene {
     /// Returns why no `look_at` can be written.
     pub fn turned(&self, registry: &Registry) -> Result<String, String> {
         let (name, view) = (self.model.camera.args.name(), self.shown().view(registry));
-        let camera =
-            view.entity(name).ok_or_else(|| format!("`{name}` is repeated or included: change the text"))?;
-        let turned = editor::look_at(&view, &camera.place).ok_or("only a `camera` can become a `look_at`")?;
-        let turned = turned.map_err(|reason| format!("the camera cannot become a `look_at`: {reason}"))?;
-        Ok(turned.applied(&view.text).as_str().to_owned())
+        Ok(camera::turned(&view, name)?.applied(&view.text).as_str().to_owned())
     }
 
     /// Returns the text with other values of an attribute, or with another number of a `let`.
@@ -149,10 +137,7 @@ impl Scene {
     /// # Errors
     /// Returns why the values cannot be written.
     pub fn tried(&self, registry: &Registry, body: &str) -> Result<String, String> {
-        let wanted: Option<Try> = serde_json::from_str(body).ok();
-        let are_numbers = |values: &[String]| values.iter().all(|value| value.parse::<f64>().is_ok());
-        let Try { name, attribute, values } =
-            wanted.filter(|wanted| are_numbers(&wanted.values)).ok_or("these are not numbers")?;
+        let Try { name, attribute, values } = Try::of(body.as_bytes()).ok_or("these are not numbers")?;
         written(registry, &self.text, &name, &attribute, &values)
     }
 

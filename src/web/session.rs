@@ -5,20 +5,17 @@ use crate::proving::Proving;
 use crate::scene::Scene;
 use crate::{editing, files, formula, surfaces};
 use serde::Serialize;
-use serde_json::{Value, json};
-use std::io;
+use serde_json::json;
 use std::ops::ControlFlow;
 use std::path::Path;
 use tabray_core::files::held;
-use tabray_core::output::aov::Aov;
 use tabray_core::render::decisions;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
-use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
-use tabray_page::{camera, entities, fields};
-use tabray_tools::probe;
+use tabray_page::camera;
+use tabray_page::queries::{Asked, Query};
 
 /// The answer to a request, with a status as in HTTP.
 pub struct Answer {
@@ -134,14 +131,6 @@ impl Session {
             return Answer::new(410, "this picture has been replaced");
         };
         let (model, registry) = (&scene.model, self.registry);
-        let place = |x: &str, y: &str| {
-            let [width, height] = model.camera.value.pixels;
-            Some([x.parse().ok().filter(|x| *x < width)?, y.parse().ok().filter(|y| *y < height)?])
-        };
-        let at_pixel = |answer: &dyn Fn([usize; 2]) -> Answer| match rest {
-            [x, y] => place(x, y).map_or_else(Answer::missing, answer),
-            _ => Answer::missing(),
-        };
         match (what, rest) {
             ("paint", [count]) => count.parse().map_or_else(
                 |_| Answer::missing(),
@@ -163,12 +152,6 @@ impl Session {
                     decisions::of(&plan).iter().map(|decision| format!("{decision}\n")).collect();
                 Answer::new(200, text::visible_lines(&words).into_owned())
             }
-            ("probe", _) => at_pixel(&|at| probed(scene, at)),
-            ("object", _) => at_pixel(&|at| Answer::json(&fields::of_pixel(registry, scene.shown(), at))),
-            ("point", _) => at_pixel(&|at| Answer::json(&camera::point(model, at))),
-            ("layer", [name]) => layer(&Plan::new(model), name),
-            ("entities", []) => Answer::json(&entities::all(registry, scene.shown())),
-            ("entity", [order]) => Answer::json(&entities::fields(registry, scene.shown(), order)),
             ("camera", []) => match camera::state(registry, scene.shown()) {
                 Ok(state) => Answer::json(&state),
                 Err(reason) => Answer::new(409, reason),
@@ -176,46 +159,24 @@ impl Session {
             ("move", []) => Answer::changed(scene.moved(registry, body)),
             ("turn", []) => Answer::changed(scene.turned(registry)),
             ("try", []) => Answer::changed(scene.tried(registry, body)),
-            _ => Answer::missing(),
+            _ => {
+                let asked = Asked {
+                    registry,
+                    shown: scene.shown(),
+                    places: &scene.places,
+                    renderer: |_| Ok(Renderer::default()),
+                    max_explanation: MAX_EXPLANATION,
+                    check: &|| ControlFlow::Continue(()),
+                };
+                Query::of(what, rest, model).map_or_else(Answer::missing, |query| {
+                    Answer::of(
+                        query.answer(&asked).map(|answer| answer.bytes).map_err(|error| error.to_string()),
+                    )
+                })
+            }
         }
     }
 }
 
 /// The maximum length of a pixel's explanation, in bytes.
 const MAX_EXPLANATION: usize = 1 << 20;
-
-/// The first bytes of an explanation.
-struct Beginning(Vec<u8>);
-
-impl io::Write for Beginning {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.0.len() + bytes.len() > MAX_EXPLANATION {
-            return Err(io::ErrorKind::StorageFull.into());
-        }
-        self.0.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Explains a pixel, and finds the lines of the object that it shows.
-fn probed(scene: &Scene, [x, y]: [usize; 2]) -> Answer {
-    let mut told = Beginning(Vec::new());
-    if probe::pixel(&Plan::new(&scene.model), x, y, &mut told).is_err() {
-        told.0.extend(b"\n...\n\nthis is too long for a page; `tabray probe` prints all of it\n");
-    }
-    let told = String::from_utf8_lossy(&told.0);
-    let lines = scene.shown().lines_of([x, y], &scene.places);
-    let explained: Value = json!({ "text": text::visible_lines(&told), "lines": lines });
-    Answer::json(&explained)
-}
-
-/// Renders an auxiliary image: red, green and blue of each pixel.
-fn layer(plan: &Plan, name: &str) -> Answer {
-    // The error needs a reference image, which is not available here.
-    let Some(aov) = Aov::of_name(name).filter(|aov| *aov != Aov::Error) else { return Answer::missing() };
-    let made = aov.render(&Renderer::default(), plan, plan, &|| ControlFlow::Continue(()));
-    made.map_or_else(|error| Answer::new(409, error.to_string()), |layer| Answer::new(200, layer.bytes))
-}

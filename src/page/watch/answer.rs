@@ -6,26 +6,23 @@ use super::chart;
 use super::feed::EventFeed;
 use super::frame::Frame;
 use super::session::Session;
-use crate::{entities, fields, html};
+use crate::html;
+use crate::queries::{Answer, Asked, Query};
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
 use hyper::body::Bytes;
 use hyper::{Method, Request, Response, StatusCode};
-use serde::Serialize;
-use std::io::{self, Write};
+use std::io;
 use std::ops::ControlFlow;
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 use tabray_cli::plan;
 use tabray_cli::process::crash;
 use tabray_cli::process::failure::report;
-use tabray_core::output::aov::Aov;
 use tabray_core::render::plan::Plan;
 use tabray_core::text;
-use tabray_core::text::Named;
 use tabray_lang::registry::Registry;
 use tabray_serve::{self as serve, Body, Client, Work};
-use tabray_tools::probe;
 use tabray_tools::threads::renderer_with;
 use tokio::time::timeout;
 
@@ -82,25 +79,7 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
     match path[..] {
         [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE.clone()),
         ["events"] => serve::stream("text/event-stream", events(session)),
-        ["probe", version, x, y] => about(feed, work, version, |frame| pixel(frame, x, y)).await,
-        ["object", version, x, y] => {
-            about(feed, work, version, |frame| object(session.registry, frame, x, y)).await
-        }
         ["camera"] => camera::state(session),
-        ["point", version, x, y] => about(feed, work, version, |frame| point(frame, x, y)).await,
-        ["entities", version] => {
-            let registry = session.registry;
-            let all = |frame: Arc<Frame>| -> Option<Job> {
-                Some(Box::new(move |_| {
-                    let all = entities::all(registry, frame.shown());
-                    Ok(("application/json", text::json(&all).into_bytes()))
-                }))
-            };
-            about(feed, work, version, all).await
-        }
-        ["entity", version, order] => {
-            about(feed, work, version, |frame| entity(session.registry, frame, order)).await
-        }
         ["plan", version] => about(feed, work, version, plan).await,
         ["chart", version, seconds] => {
             about(feed, work, version, |frame| charted(session.registry, frame, seconds)).await
@@ -114,7 +93,11 @@ pub async fn answer(request: &Request<Bytes>, session: &Session, work: &Work) ->
         ["other", version, how] => {
             about(feed, work, version, |frame| other_image(session.registry, frame, how)).await
         }
-        ["layer", version, name] => about(feed, work, version, |frame| layer(frame, name)).await,
+        [
+            name @ ("probe" | "object" | "point" | "entities" | "entity" | "layer"),
+            version,
+            ref parts @ ..,
+        ] => about(feed, work, version, |frame| query(session.registry, frame, name, parts)).await,
         _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
     }
 }
@@ -181,101 +164,19 @@ fn check(frame: &Frame, client: &Client) -> ControlFlow<()> {
     client.check()
 }
 
-/// Finds the attributes of the object that a pixel shows.
-fn object(registry: &'static Registry, frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
-    let at = place(&frame, x, y)?;
-    Some(Box::new(move |_| {
-        let fields = fields::of_pixel(registry, frame.shown(), at);
-        Ok(("application/json", text::json(&fields).into_bytes()))
-    }))
-}
-
-/// Finds the point that a pixel shows.
-fn point(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
-    let at = place(&frame, x, y)?;
-    Some(Box::new(move |_| {
-        Ok(("application/json", text::json(&crate::camera::point(&frame.model, at)).into_bytes()))
-    }))
-}
-
-/// Reads the column and the row of a pixel of an image.
-fn place(frame: &Frame, x: &str, y: &str) -> Option<[usize; 2]> {
-    let [width, height] = frame.model.camera.value.pixels;
-    Some([x.parse().ok().filter(|x| *x < width)?, y.parse().ok().filter(|y| *y < height)?])
-}
-
-/// Finds the attributes of an entity by its index, or the scene's own numbers.
-fn entity(registry: &'static Registry, frame: Arc<Frame>, order: &str) -> Option<Job> {
-    let order = order.to_owned();
-    Some(Box::new(move |_| {
-        let fields = entities::fields(registry, frame.shown(), &order);
-        Ok(("application/json", text::json(&fields).into_bytes()))
-    }))
-}
-
-/// Explains a pixel, and finds the lines of the object that it shows.
-fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
-    let [x, y] = place(&frame, x, y)?;
+/// Answers a query that a page without a server has too.
+fn query(registry: &'static Registry, frame: Arc<Frame>, name: &str, parts: &[&str]) -> Option<Job> {
+    let query = Query::of(name, parts, &frame.model)?;
     Some(Box::new(move |client| {
-        renderer_with(1)?.run(|| {
-            let mut told = LimitedText { text: Vec::new(), check: || check(&frame, client) };
-            match probe::pixel(&Plan::new(&frame.model), x, y, &mut told) {
-                Err(error) if error.kind() == io::ErrorKind::StorageFull => {
-                    told.text
-                        .extend(b"\n...\n\nthis is too long for a page; `tabray probe` prints all of it\n");
-                }
-                written => written?,
-            }
-            let told = String::from_utf8_lossy(&told.text);
-            let explained = PixelExplanation {
-                lines: frame.shown().lines_of([x, y], &frame.places),
-                text: &text::visible_lines(&told),
-            };
-            Ok(("application/json", text::json(&explained).into_bytes()))
-        })
-    }))
-}
-
-/// The explanation of a pixel.
-#[derive(Serialize)]
-struct PixelExplanation<'e> {
-    /// The first and the last line of the object that the pixel shows, from 1; null where it shows none.
-    lines: Option<[usize; 2]>,
-    /// The output of `tabray probe`, or the beginning of it.
-    text: &'e str,
-}
-
-/// Collects a pixel's explanation while a client waits for it and it is not too long.
-struct LimitedText<C> {
-    text: Vec<u8>,
-    check: C,
-}
-
-impl<C: Fn() -> ControlFlow<()>> Write for LimitedText<C> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if (self.check)().is_break() {
-            // An operation that fails with `Interrupted` would be tried again.
-            return Err(io::ErrorKind::BrokenPipe.into());
-        }
-        if self.text.len() + bytes.len() > MAX_EXPLANATION {
-            return Err(io::ErrorKind::StorageFull.into());
-        }
-        self.text.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Renders an image beside the main one: red, green and blue of each pixel.
-fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
-    // The error needs a reference image, which is not available here.
-    let aov = Aov::of_name(name).filter(|aov| *aov != Aov::Error)?;
-    Some(Box::new(move |client| {
-        let plan = Plan::new(&frame.model);
-        let layer = aov.render(&renderer_with(0)?, &plan, &plan, &|| check(&frame, client))?;
-        Ok(("application/octet-stream", layer.bytes))
+        let asked = Asked {
+            registry,
+            shown: frame.shown(),
+            places: &frame.places,
+            renderer: renderer_with,
+            max_explanation: MAX_EXPLANATION,
+            check: &|| check(&frame, client),
+        };
+        query.answer(&asked).map(|Answer { kind, bytes }| (kind, bytes))
     }))
 }
 
@@ -304,19 +205,4 @@ fn other_image(registry: &'static Registry, frame: Arc<Frame>, how: &str) -> Opt
         let image = alternative::image(registry, &frame, how, || check(&frame, client))?;
         Ok(("application/octet-stream", image))
     }))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_explanation_ends_where_it_is_too_long_or_nobody_wants_it() {
-        let mut told = LimitedText { text: Vec::new(), check: || ControlFlow::Continue(()) };
-        told.write_all(&vec![b'a'; MAX_EXPLANATION]).expect("it is not too long");
-        let full = told.write_all(b"a").expect_err("now it is");
-        assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, MAX_EXPLANATION));
-        let mut told = LimitedText { text: Vec::new(), check: || ControlFlow::Break(()) };
-        assert_eq!(told.write_all(b"a").expect_err("nobody").kind(), io::ErrorKind::BrokenPipe);
-    }
 }

@@ -52,10 +52,7 @@ pub fn turn(session: &Session) -> Response<Body> {
     let (name, mut change) = (frame.model.camera.args.name(), Change::default());
     let edited = session.edit(|text| {
         let view = editor::read(session.registry, &frame.name, Text::new(text));
-        let camera =
-            view.entity(name).ok_or_else(|| format!("`{name}` is repeated or included: change the text"))?;
-        let turned = editor::look_at(&view, &camera.place).ok_or("only a `camera` can become a `look_at`")?;
-        let turned = turned.map_err(|reason| format!("the camera cannot become a `look_at`: {reason}"))?;
+        let turned = camera::turned(&view, name)?;
         change = turned.change;
         Ok(turned.applied(&view.text).as_str().to_owned())
     });
