@@ -24,6 +24,7 @@ mod parametric;
 mod places;
 mod polynomials;
 mod query;
+mod ranges;
 mod solids;
 mod stability;
 mod winding;

@@ -6,7 +6,8 @@ use crate::interval::Interval;
 use crate::roots::bernstein::{Bernstein, NearRoot, Roots};
 use std::ops::Range;
 
-/// The part of a piece, on either side of a place near a root, that certainly contains the root.
+/// The part of a piece, on either side of a place near a root, that contains the root unless rounding hides much of the
+/// polynomial.
 const BESIDE: f64 = 1e-6;
 
 /// A polynomial is expanded again on a piece if that reduces its error to less than this fraction.
@@ -68,10 +69,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
                 }
                 let near = form.near_root(rises, near);
                 let root = low + near.place * (high - low);
-                let beside = BESIDE * (high - low);
-                let is_outside =
-                    self.base + root + beside < self.range.near || self.base + root - beside > self.range.far;
-                if is_outside {
+                if self.is_outside(root, BESIDE * (high - low), rises, (low, high)) {
                     return None;
                 }
                 let near = NearRoot { place: root, slope: near.slope / (high - low), ..near };
@@ -94,6 +92,18 @@ impl<L: FunctionOnLine> Search<'_, L> {
         let Judgement::Root(root) = judgement else { return None };
         let root = self.line.polished(root).clamp(low, high);
         self.is_in_range(root).then_some(root)
+    }
+
+    /// Tells whether the only root on a piece, where the function rises or falls, is certainly out of the range. It is
+    /// near a place, and within `beside` of it if the function has different signs there.
+    fn is_outside(&self, near: f64, beside: f64, rises: bool, (low, high): (f64, f64)) -> bool {
+        let (before, after) = ((near - beside).max(low), (near + beside).min(high));
+        let is_above = |t: f64, above: bool| {
+            let value = self.value(t);
+            if above { value.low > 0.0 } else { value.high < 0.0 }
+        };
+        self.base + after < self.range.near && is_above(after, rises)
+            || self.base + before > self.range.far && is_above(before, !rises)
     }
 
     /// Notes that nothing is certain if the root on a piece may lie where rounding hides whether the line is still
