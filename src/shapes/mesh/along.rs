@@ -82,7 +82,7 @@ impl Surface {
     ) -> Vec<(HitEnclosure<F>, usize)> {
         if F::IS_LONG
             && leaves.is_none()
-            && let Some(found) = self.all_exactly(line)
+            && let Some(found) = self.all_exactly::<A, F>(line)
         {
             return found;
         }

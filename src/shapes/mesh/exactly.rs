@@ -1,13 +1,14 @@
 //! Crossings of lines whose numbers are fractions, decided with integers. Rays through edges and corners take no more
 //! digits than others that way.
 
+use super::face::Face;
 use super::surface::Surface;
 use glam::DVec3;
 use tabray_exact::interval::{Interval, Wide};
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 use tabray_exact::whole_line::{Crossing, Seen, WholeLine};
 use tabray_world::accuracy::NotClassic;
-use tabray_world::certify::{HitEnclosure, Precise, exact_line};
+use tabray_world::certify::{HitEnclosure, HitProofs, Precise, exact_line};
 use tabray_world::geometry::sight::Line;
 
 /// The faces that a line crosses with t > 0, in the order of their places.
@@ -74,7 +75,7 @@ impl Surface {
     ) -> Option<(HitEnclosure<F>, usize)> {
         let crossings = self.exact_crossings::<F>(line, true)?;
         let Some((at, here)) = crossings.places().next() else { return Some((HitEnclosure::Misses, 0)) };
-        let hit = HitEnclosure::Hits(F::narrow(at.into()));
+        let hit = HitEnclosure::Hits(self.place::<A, F>(here[0].1, line, at));
         if let [(_, face)] = here {
             return Some((hit, *face));
         }
@@ -102,14 +103,14 @@ impl Surface {
     /// Returns what is proven about each of a line's hits with t > 0, and the hit faces, like
     /// [`all_along`](Self::all_along); `None` if the line's numbers are no fractions. At an edge or a corner of a closed
     /// mesh, a line that crosses the surface does so once. It is open whether one that touches it does.
-    pub(super) fn all_exactly<F: Precise>(
+    pub(super) fn all_exactly<A: NotClassic, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
     ) -> Option<Vec<(HitEnclosure<F>, usize)>> {
         let crossings = self.exact_crossings::<F>(line, false)?;
         let mut all = Vec::new();
         for (at, here) in crossings.places() {
-            let at = F::narrow(at.into());
+            let at = self.place::<A, F>(here[0].1, line, at);
             let beside = here.iter().filter(|(crossing, _)| crossing.is_beside);
             let net: i32 = beside.map(|(crossing, _)| if crossing.enters { 1 } else { -1 }).sum();
             let is_bounding = |crossing: &Crossing| !self.is_closed() || crossing.enters == (net > 0);
@@ -124,6 +125,20 @@ impl Surface {
             }
         }
         Some(all)
+    }
+
+    /// Encloses the t at which a line crosses a face, given 237 bits of it. Fractions may know it exactly, and so
+    /// whether something else is there.
+    fn place<A: NotClassic, F: Precise>(
+        &self,
+        face: usize,
+        line: &Line<Interval<F>>,
+        near: Wide,
+    ) -> Interval<F> {
+        match Face(self.triangle::<A>(face)).first_hit(line, None).0 {
+            HitEnclosure::Hits(at) | HitEnclosure::Edge(at) if at.low == at.high => at,
+            _ => F::narrow(near.into()),
+        }
     }
 }
 

@@ -9,14 +9,16 @@ use crate::triangle::Triangle;
 use glam::DVec3;
 use proptest::prelude::*;
 use std::sync::Arc;
+use tabray_exact::interval::{Fraction, Interval};
+use tabray_exact::scalar::Scalar;
 use tabray_world::accuracy::{Accuracy, Exact};
 use tabray_world::any_shape::AnyShape;
-use tabray_world::certify::{Enclosure, Precision};
+use tabray_world::certify::{Enclosure, HitEnclosure, HitProofs, Precision};
 use tabray_world::coincidence;
 use tabray_world::geometry::placement::Rotation;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use tabray_world::geometry::ray_packet::{PACKET_SIZE, RayPacket, SurfaceInteraction};
-use tabray_world::geometry::sight::Sight;
+use tabray_world::geometry::sight::{Line, Sight};
 use tabray_world::simd::cpu::Cpu;
 use tabray_world::simd::soa::{LANES, Vectors};
 
@@ -283,6 +285,17 @@ fn a_face_that_only_another_ray_within_the_drift_hits_is_not_missed() {
             assert!(within.near <= 2.0 && within.far == MISS, "{drift:?}: {within:?}");
         }
     }
+}
+
+#[test]
+fn fractions_know_exactly_where_a_line_crosses_a_mesh() {
+    let surface = surface(closed(&[1.0], 6), &ToWorld::new(PLAIN, Rotation::NONE, DVec3::ZERO));
+    let mesh = Mesh::<Exact>::new(Arc::new(surface), Accuracy::Exact);
+    let exactly = |of: [f64; 3]| of.map(Interval::<Fraction>::constant);
+    let line = Line { origin: exactly([0.25, 0.375, 3.0]), dir: exactly([-0.125, 0.1, -0.7]) };
+    let all = HitProofs::all_hits(&mesh, &line, None).expect("all hits");
+    let is_exact = |hit: &HitEnclosure<Fraction>| matches!(hit, HitEnclosure::Hits(at) if at.low == at.high);
+    assert!(all.len() == 2 && all.iter().all(|(hit, _)| is_exact(hit)), "{all:?}");
 }
 
 #[test]
