@@ -5,23 +5,18 @@
 //! finished, a bit for each tile that tells whether it is (a [`TileSet`]), and the SHA-256 of all that. The pixels come
 //! tile by tile, and in a tile in rows from the top.
 
-use crate::identity::Identity;
-use serde::{Deserialize, Serialize};
+mod label;
+
+pub use label::{Label, MAX_PARTS, PixelFormat, TileSet};
+
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::mem::take;
 use std::ops::Range;
-use tabray_core::output::aov::{Aov, Setting};
-use tabray_core::output::deflate::Compression;
-use tabray_core::output::full_range::FullRange;
-use tabray_core::output::picture::Format;
 use tabray_core::render::division::Grid;
 use tabray_core::render::tiles::{Band, Strip, TILE};
 use tabray_core::text;
-
-/// The maximum number of parts of an image.
-pub const MAX_PARTS: usize = 100_000;
 
 /// The first line of each file.
 const FIRST: &[u8] = b"tabray pixels 1\n";
@@ -38,183 +33,6 @@ const LONGEST: u64 = 1 << 26;
 
 /// The length of the checksum at the end of a file in bytes.
 const CHECKSUM: usize = 32;
-
-/// The format of the pixels of a part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PixelFormat {
-    /// Pixels of a PPM: three bytes each.
-    Ppm,
-    /// Pixels of a PNG with this compression: three bytes each.
-    Png(#[serde(with = "by_name")] Compression),
-    /// Pixels of an EXR: three numbers of 32 bits each.
-    Exr,
-    /// Pixels of a PFM: three numbers of 32 bits each.
-    Pfm,
-    /// Pixels of an auxiliary image, which is a PNG with this compression, or else a PPM: three numbers of 64 bits
-    /// each.
-    Beside(Aov, #[serde(with = "by_name")] Option<Compression>, Setting),
-}
-
-/// Compression by its name on the command line.
-mod by_name {
-    use super::{Compression, text};
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
-
-    /// A compression, or none.
-    pub trait Named: Sized {
-        fn name(&self) -> Option<String>;
-        fn of(name: Option<String>) -> Option<Self>;
-    }
-
-    impl Named for Compression {
-        fn name(&self) -> Option<String> {
-            Some(text::Named::name(*self).to_owned())
-        }
-
-        fn of(name: Option<String>) -> Option<Self> {
-            <Self as text::Named>::of_name(&name?)
-        }
-    }
-
-    impl Named for Option<Compression> {
-        fn name(&self) -> Option<String> {
-            self.map(|of| text::Named::name(of).to_owned())
-        }
-
-        fn of(name: Option<String>) -> Option<Self> {
-            match name {
-                Some(name) => <Compression as text::Named>::of_name(&name).map(Some),
-                None => Some(None),
-            }
-        }
-    }
-
-    pub fn serialize<N: Named, S: Serializer>(of: &N, serializer: S) -> Result<S::Ok, S::Error> {
-        of.name().serialize(serializer)
-    }
-
-    pub fn deserialize<'de, N: Named, D: Deserializer<'de>>(deserializer: D) -> Result<N, D::Error> {
-        N::of(Option::deserialize(deserializer)?).ok_or_else(|| de::Error::custom("no compression"))
-    }
-}
-
-impl PixelFormat {
-    /// Returns the format of the parts of an image of this format.
-    pub fn picture(format: Format) -> Self {
-        match format {
-            Format::Ppm => Self::Ppm,
-            Format::Png(compression) => Self::Png(compression),
-        }
-    }
-
-    /// Returns the format of the parts of an image of full range.
-    pub fn full_range(format: FullRange) -> Self {
-        match format {
-            FullRange::Exr => Self::Exr,
-            FullRange::Pfm => Self::Pfm,
-        }
-    }
-
-    /// Returns the length of a pixel in bytes.
-    pub fn pixel(self) -> usize {
-        match self {
-            Self::Ppm | Self::Png(_) => 3,
-            Self::Exr | Self::Pfm => 12,
-            Self::Beside(..) => 24,
-        }
-    }
-}
-
-/// The label of a part: the image that it belongs to, and which of its parts it is. A whole image is part 1 of 1.
-#[derive(Clone, Serialize, Deserialize)]
-pub struct Label {
-    /// The number of the part, from 1, and the number of parts.
-    pub part: [usize; 2],
-    /// The first of its tiles, and the first of the next part.
-    pub tiles: [usize; 2],
-    /// The width and height of the image in pixels.
-    pub size: [usize; 2],
-    /// The format of the pixels.
-    pub what: PixelFormat,
-    /// The auxiliary images, which have parts of their own.
-    pub beside: Vec<Aov>,
-    /// The settings and inputs on which the pixels depend.
-    pub identity: Identity,
-    /// The texts that a PNG records about how the image was made, each with its keyword.
-    pub made: Vec<(String, String)>,
-}
-
-impl Label {
-    /// Returns the tiles of the image.
-    pub fn grid(&self) -> Grid {
-        Grid { size: self.size }
-    }
-
-    /// Returns the tiles of the part.
-    pub fn tiles(&self) -> Range<usize> {
-        self.tiles[0]..self.tiles[1]
-    }
-
-    /// Tells whether the label can be that of a part.
-    fn is_sound(&self) -> bool {
-        let [number, of] = self.part;
-        let pixels = self.size[0].checked_mul(self.size[1]);
-        let is_small = self.size.iter().all(|side| *side <= 100_000) && pixels.is_some_and(|all| all > 0);
-        let is_keyword = |word: &str| {
-            (1..80).contains(&word.len()) && word.bytes().all(|byte| byte.is_ascii_graphic() || byte == b' ')
-        };
-        let are_texts = self.made.iter().all(|(keyword, text)| is_keyword(keyword) && !text.contains('\0'));
-        is_small
-            && are_texts
-            && of <= MAX_PARTS
-            && (1..=of).contains(&number)
-            && self.tiles[0] < self.tiles[1]
-            && self.tiles[1] <= self.grid().count()
-    }
-}
-
-/// Which tiles of a part are finished.
-pub struct TileSet {
-    tiles: Range<usize>,
-    /// A bit for each tile of the part, beginning with the lowest of each byte.
-    bits: Vec<u8>,
-}
-
-impl TileSet {
-    /// Makes an empty set of these tiles of an image.
-    pub fn none(tiles: Range<usize>) -> Self {
-        let bits = vec![0; tiles.len().div_ceil(8)];
-        Self { tiles, bits }
-    }
-
-    /// Adds a tile, which must be one of the part.
-    pub fn add(&mut self, tile: usize) {
-        let at = tile - self.tiles.start;
-        self.bits[at / 8] |= 1 << (at % 8);
-    }
-
-    /// Tells whether a tile of the image is in the set.
-    pub fn has(&self, tile: usize) -> bool {
-        let at = tile.wrapping_sub(self.tiles.start);
-        at < self.tiles.len() && self.bits[at / 8] >> (at % 8) & 1 == 1
-    }
-
-    /// Lists the tiles in the set.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
-        self.tiles.clone().filter(|tile| self.has(*tile))
-    }
-
-    /// Tells whether all tiles are in the set.
-    pub fn is_whole(&self) -> bool {
-        self.iter().eq(self.tiles.clone())
-    }
-
-    /// Returns the number of pixels of the tiles in the set.
-    pub fn pixels(&self, grid: Grid) -> usize {
-        self.iter().map(|tile| grid.pixels(tile)).sum()
-    }
-}
 
 /// Writes a part, tile by tile.
 pub struct Writer<W> {
@@ -447,6 +265,7 @@ pub fn strips<E>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identity::Identity;
 
     const SIZE: [usize; 2] = [20, 18];
 
