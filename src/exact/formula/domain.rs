@@ -2,8 +2,7 @@
 
 use super::Formula;
 use super::field::Field;
-use super::program::{Instruction, MAX_REGISTERS};
-use super::step::{Function, Step};
+use super::step::{Function, Step, fold};
 use super::variables::SPACE;
 use crate::interval::{Float, Interval};
 use crate::scalar::Scalar;
@@ -21,15 +20,11 @@ impl Field {
         let [low, high] = corners;
         let within = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
         let steps = &self.formula().steps;
-        let mut starts: Vec<usize> = Vec::new();
         // The operands that must not be negative, each with the index of the operation that requires this.
         let (mut conditions, mut of_all): (Vec<(usize, Vec<Step>)>, Vec<Step>) = (Vec::new(), Vec::new());
-        for (index, step) in steps.iter().enumerate() {
-            // The place where the operation's operands start, and the place where the first of them ends.
-            let (mut first, mut end, mut last) = (index, index, index);
-            for _ in 0..step.operands() {
-                (first, end, last) = (starts.pop().unwrap_or(0), first, end);
-            }
+        fold(steps, |index, step, starts: &mut [usize]| {
+            // The places where the operation's operands start, or where the last of them ends.
+            let [first, end, last] = [0, 1, 2].map(|which| starts.get(which).copied().unwrap_or(index));
             match step {
                 Step::Call(Function::Sqrt | Function::Ln | Function::Pow) => {
                     conditions.push((index, steps[first..end].to_vec()));
@@ -40,13 +35,13 @@ impl Field {
                         let fulfilled = vec![Step::Number(1.0)];
                         let own = take(condition);
                         let [one, other] = if *at < last { [own, fulfilled] } else { [fulfilled, own] };
-                        *condition = [&steps[first..end], &one, &other, &[*step]].concat();
+                        *condition = [&steps[first..end], &one, &other, &[step]].concat();
                     }
                 }
                 _ => {}
             }
-            starts.push(first);
-        }
+            Some(first)
+        });
         let conditions: Vec<_> = conditions.into_iter().map(|(_, condition)| condition).collect();
         for (index, condition) in conditions.iter().enumerate() {
             // An operand that cannot be negative may be negative after rounding.
@@ -92,16 +87,12 @@ impl Field {
     /// otherwise below it. Returns `None` if the formula is certainly undefined there. Counts the jumps and poles that
     /// occur there. A tangent with several poles counts as too many.
     fn beside<F: Float>(&self, at: [Interval<F>; 3], sides: u32, jumps: &mut u32) -> Option<Interval<F>> {
-        let program = self.program();
-        let mut registers = [at[0]; MAX_REGISTERS];
-        registers[..3].copy_from_slice(&at);
-        let mut undefined = [false; MAX_REGISTERS];
-        for &Instruction { step, operands, result } in &program.instructions {
-            let (a, b) = (registers[usize::from(operands[0])], registers[usize::from(operands[1])]);
-            let c = || registers[usize::from(operands[2])];
+        let (value, is_undefined) = self.program().fold(at.map(|axis| (axis, false)), |step, operands| {
+            let (a, b) = (operands[0].0, operands[1].0);
+            let c = || operands[2].0;
             let mut value = step.of::<_, true>(a, b, c, None);
             let (zero, is_above) = (F::of(0.0), *jumps < MAX_JUMPS && sides >> *jumps & 1 == 1);
-            let without = |which: usize| undefined[usize::from(operands[which])];
+            let without = |which: usize| operands[which].1;
             let mut is_undefined = (0..step.operands()).any(without);
             // Tells whether a divisor is 0 at most on this side of its pole.
             let is_nowhere = |of: Interval<F>| if is_above { of.high <= zero } else { of.low >= zero };
@@ -163,11 +154,9 @@ impl Field {
                 }
                 _ => {}
             }
-            registers[usize::from(result)] = value;
-            undefined[usize::from(result)] = is_undefined;
-        }
-        let result = usize::from(program.result);
-        (!undefined[result]).then(|| registers[result])
+            Some((value, is_undefined))
+        })?;
+        (!is_undefined).then_some(value)
     }
 }
 

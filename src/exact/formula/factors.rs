@@ -2,9 +2,10 @@
 
 use super::field::Field;
 use super::rational::Rational;
-use super::step::{Function, Step};
+use super::step::{Function, Step, fold};
 use super::{Formula, value_of};
 use crate::text;
+use std::mem::take;
 use std::sync::Arc;
 
 /// The starts and directions of lines with short coordinates, in general position.
@@ -118,15 +119,11 @@ fn written(steps: &[Step]) -> String {
     fn within((text, binds): Part, least: u8) -> String {
         if binds < least { format!("({text})") } else { text }
     }
-    let mut waiting: Vec<Part> = Vec::new();
-    for step in steps {
-        let third = if step.operands() > 2 { waiting.pop() } else { None };
-        let second = if step.operands() > 1 { waiting.pop() } else { None };
-        let first = if step.operands() > 0 { waiting.pop() } else { None };
-        let [a, b, c] = [first, second, third].map(Option::unwrap_or_default);
-        waiting.push(match step {
-            Step::Variable(index) => (Field::VARIABLES[usize::from(*index)].to_owned(), 4),
-            Step::Number(number) => (text::shortest(*number), if *number < 0.0 { 2 } else { 4 }),
+    let whole = fold(steps, |_, step, operands: &mut [Part]| {
+        let [a, b, c] = [0, 1, 2].map(|which| operands.get_mut(which).map(take).unwrap_or_default());
+        Some(match step {
+            Step::Variable(index) => (Field::VARIABLES[usize::from(index)].to_owned(), 4),
+            Step::Number(number) => (text::shortest(number), if number < 0.0 { 2 } else { 4 }),
             Step::Neg => (format!("-{}", within(a, 3)), 2),
             Step::Add | Step::Shift(_) => (format!("{} + {}", within(a, 0), within(b, 0)), 0),
             Step::Sub => (format!("{} - {}", within(a, 0), within(b, 1)), 0),
@@ -141,9 +138,9 @@ fn written(steps: &[Step]) -> String {
                 let arguments = [a.0, b.0, c.0][..step.operands()].join(", ");
                 (format!("{name}({arguments})"), 4)
             }
-        });
-    }
-    waiting.pop().unwrap_or_default().0
+        })
+    });
+    whole.unwrap_or_default().0
 }
 
 #[cfg(test)]

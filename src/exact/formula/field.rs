@@ -3,7 +3,7 @@
 use super::along::{Products, by_products};
 use super::cells::{Cells, is_choice};
 use super::program::{MAX_REGISTERS, Program};
-use super::step::{Function, Step};
+use super::step::{Function, Step, fold};
 use super::variables::{CURVE, PATCH, SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
 use crate::f64x8::F64x8;
@@ -204,19 +204,18 @@ impl Field {
 
 /// Tells whether operations divide by anything but numbers.
 fn divides(steps: &[Step]) -> bool {
+    let mut divides = false;
     // For each value, whether it depends on variables.
-    let mut waiting: Vec<bool> = Vec::new();
-    steps.iter().any(|step| {
-        let operands = waiting.split_off(waiting.len().saturating_sub(step.operands()));
-        let varies = operands.contains(&true);
-        waiting.push(varies || matches!(step, Step::Variable(_)));
+    fold(steps, |_, step, varies: &mut [bool]| {
         let divisor = match step {
-            Step::Div | Step::Call(Function::Smin | Function::Smax) => operands.last(),
-            Step::Powi(..0) => operands.first(),
+            Step::Div | Step::Call(Function::Smin | Function::Smax) => varies.last(),
+            Step::Powi(..0) => varies.first(),
             _ => None,
         };
-        divisor == Some(&true)
-    })
+        divides |= divisor == Some(&true);
+        Some(varies.contains(&true) || matches!(step, Step::Variable(_)))
+    });
+    divides
 }
 
 /// A square root that is 0 for a negative number.

@@ -182,14 +182,9 @@ fn run<const LANES: usize, const REGISTERS: usize>(program: &Program, at: [[f64;
 /// Returns a bound of the error of a program's value in a box. Coordinates may be off by `off`. Returns `None` if the
 /// program has operations other than sums, products, and quotients by numbers.
 fn error(program: &Program, within: [Interval; 3], off: f64) -> Option<f64> {
-    let mut registers = vec![(Interval::constant(0.0), 0.0); program.registers.max(3)];
-    for axis in 0..3 {
-        registers[axis] = (within[axis], off);
-    }
-    for Instruction { step, operands, result } in &program.instructions {
-        let [(a, a_off), (b, b_off), _] = operands.map(|operand| registers[usize::from(operand)]);
+    let error = program.fold(within.map(|axis| (axis, off)), |step, [&(a, a_off), &(b, b_off), _]| {
         let (a_size, b_size) = (a.magnitude(), b.magnitude());
-        let (value, handed_on) = match *step {
+        let (value, handed_on) = match step {
             Step::Mul => (a * b, a_off * (b_size + b_off) + a_size * b_off),
             Step::Add => (a + b, a_off + b_off),
             Step::Sub => (a - b, a_off + b_off),
@@ -203,12 +198,9 @@ fn error(program: &Program, within: [Interval; 3], off: f64) -> Option<f64> {
         let is_exact = matches!(step, Step::Neg | Step::Number(_));
         let rounded = if is_exact { 0.0 } else { ROUNDING * (value.magnitude() + handed_on) };
         let off = ROUNDED_UP * (handed_on + rounded) + if is_exact { 0.0 } else { f64::MIN_POSITIVE };
-        if !value.is_bounded() {
-            return None;
-        }
-        registers[usize::from(*result)] = (value, off);
-    }
-    Some(registers[usize::from(program.result)].1)
+        value.is_bounded().then_some((value, off))
+    });
+    error.map(|(_, off)| off)
 }
 
 /// Returns for each node the Bernstein coefficients of the polynomial that is 1 at this node and 0 at the others, by

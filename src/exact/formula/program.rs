@@ -1,6 +1,6 @@
 //! Formulas as programs: operations on registers. Equal operations are carried out only once.
 
-use super::step::{Function, MAX_DEPTH, Step};
+use super::step::{Function, MAX_DEPTH, Step, fold};
 use super::variables::SURFACE;
 use std::collections::HashMap;
 use std::mem::{Discriminant, discriminant};
@@ -110,6 +110,22 @@ impl Program {
         Self { instructions, result: places[*result] as u8, registers }
     }
 
+    /// Carries out the operations on values of any type, given those of the variables. `of` returns the value of an
+    /// operation on up to three operands; nothing more is carried out once it returns `None`.
+    pub fn fold<T: Clone, const VARIABLES: usize>(
+        &self,
+        at: [T; VARIABLES],
+        mut of: impl FnMut(Step, [&T; 3]) -> Option<T>,
+    ) -> Option<T> {
+        let mut registers = at.to_vec();
+        registers.resize(self.registers.max(VARIABLES), at[0].clone());
+        for Instruction { step, operands, result } in &self.instructions {
+            let value = of(*step, operands.map(|operand| &registers[usize::from(operand)]))?;
+            registers[usize::from(*result)] = value;
+        }
+        Some(registers.swap_remove(usize::from(self.result)))
+    }
+
     /// Returns the values that the program computes, in order.
     pub fn values(&self, variables: usize) -> Values {
         let variable = |index| Value { step: Step::Variable(index as u8), operands: [0; 3] };
@@ -178,27 +194,20 @@ impl Values {
 fn values(steps: &[Step], variables: usize, are_shared: bool) -> Values {
     let variable = |index: usize| Value { step: Step::Variable(index as u8), operands: [0; 3] };
     let mut values: Vec<_> = (0..variables).map(variable).collect();
-    let (mut known, mut waiting) = (HashMap::new(), Vec::new());
-    for step in steps {
-        if let Step::Variable(index) = *step {
-            waiting.push(usize::from(index));
-            continue;
+    let mut known = HashMap::new();
+    let result = fold(steps, |_, step, of: &mut [usize]| {
+        if let Step::Variable(index) = step {
+            return Some(usize::from(index));
         }
-        let mut operands = [0; 3];
-        let count = step.operands();
-        for operand in operands[..count].iter_mut().rev() {
-            *operand = waiting.pop().unwrap_or(0);
-        }
-        let value = Value { step: *step, operands };
+        let value = Value { step, operands: [0, 1, 2].map(|which| of.get(which).copied().unwrap_or(0)) };
         let new = values.len();
         let index = if are_shared { *known.entry(value.key()).or_insert(new) } else { new };
         if index == new {
             values.push(value);
         }
-        waiting.push(index);
-    }
-    let result = waiting.pop().unwrap_or(0);
-    Values { list: values, result }
+        Some(index)
+    });
+    Values { list: values, result: result.unwrap_or(0) }
 }
 
 #[cfg(test)]

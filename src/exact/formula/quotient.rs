@@ -2,9 +2,10 @@
 
 use super::Formula;
 use super::field::Field;
-use super::step::Step;
+use super::step::{Step, fold};
 use super::variables::SPACE;
 use crate::polynomial::MAX_COEFFICIENTS;
+use std::mem::take;
 use std::sync::Arc;
 
 /// The maximum number of operations of a numerator.
@@ -66,33 +67,30 @@ impl Quotient {
                 divisors.push(of.above.clone());
             }
         };
-        let mut waiting: Vec<Self> = Vec::new();
-        for step in steps {
-            let second = if step.operands() == 2 { waiting.pop() } else { None };
-            let second = second.unwrap_or_default();
-            let mut first = if step.operands() > 0 { waiting.pop()? } else { Self::default() };
+        fold(steps, |_, step, operands: &mut [Self]| {
+            let [mut first, second] =
+                [0, 1].map(|which| operands.get_mut(which).map(take).unwrap_or_default());
             match step {
-                Step::Variable(_) | Step::Number(_) | Step::Neg | Step::Scale(_) => first.above.push(*step),
-                Step::Shift(number) => first = first.plus(Self::number(*number), Step::Add),
-                Step::Add | Step::Sub => first = first.plus(second, *step),
+                Step::Variable(_) | Step::Number(_) | Step::Neg | Step::Scale(_) => first.above.push(step),
+                Step::Shift(number) => first = first.plus(Self::number(number), Step::Add),
+                Step::Add | Step::Sub => first = first.plus(second, step),
                 Step::Mul => first = first.times(second),
                 Step::Div => {
                     divides_by(&second);
                     first = first.times(second.inverse()?);
                 }
-                Step::Powi(exponent) if *exponent < 0 => {
+                Step::Powi(exponent) if exponent < 0 => {
                     divides_by(&first);
                     first = first.inverse()?.power(exponent.checked_neg()?)?;
                 }
-                Step::Powi(exponent) => first = first.power(*exponent)?,
+                Step::Powi(exponent) => first = first.power(exponent)?,
                 Step::Spline | Step::Call(_) => return None,
             }
             if first.above.len() > MAX_STEPS || first.below.iter().any(|(_, power)| *power > MAX_POWER) {
                 return None;
             }
-            waiting.push(first);
-        }
-        waiting.pop()
+            Some(first)
+        })
     }
 
     fn number(number: f64) -> Self {

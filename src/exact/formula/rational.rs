@@ -4,7 +4,7 @@
 //! by numbers is a polynomial along a line. Its coefficients are fractions if the line's are.
 
 use super::field::Field;
-use super::program::{Instruction, Program};
+use super::program::Program;
 use super::step::Step;
 use crate::interval::Fraction;
 use crate::polynomial::MAX_COEFFICIENTS;
@@ -152,25 +152,20 @@ impl Field {
 }
 
 fn run(program: &Program, at: [Rational; 3]) -> Option<Rational> {
-    let mut registers = at.to_vec();
-    registers.resize(program.registers, Rational::from(0.0));
-    for Instruction { step, operands, result } in &program.instructions {
-        let [a, b, _] = operands.map(|operand| &registers[usize::from(operand)]);
-        let value = match step {
+    program.fold(at, |step, [a, b, _]| {
+        Some(match step {
             Step::Variable(_) => a.clone(),
-            Step::Number(number) => Rational::from(*number),
+            Step::Number(number) => Rational::from(number),
             Step::Neg => a.clone().negated(),
             Step::Add => a.plus(b)?,
             Step::Sub => a.plus(&b.clone().negated())?,
             Step::Mul => a.times(b)?,
             Step::Div => a.over(b)?,
-            Step::Powi(exponent) if *exponent >= 0 => a.power(exponent.unsigned_abs())?,
+            Step::Powi(exponent) if exponent >= 0 => a.power(exponent.unsigned_abs())?,
             Step::Powi(exponent) => Rational::from(1.0).over(&a.power(exponent.unsigned_abs())?)?,
-            Step::Scale(factor) => a.times(&Rational::from(*factor))?,
-            Step::Shift(by) => a.plus(&Rational::from(*by))?,
+            Step::Scale(factor) => a.times(&Rational::from(factor))?,
+            Step::Shift(by) => a.plus(&Rational::from(by))?,
             Step::Spline | Step::Call(_) => return None,
-        };
-        registers[usize::from(*result)] = value;
-    }
-    Some(registers.swap_remove(usize::from(program.result)))
+        })
+    })
 }

@@ -166,6 +166,20 @@ fn blend<N: Scalar>(a: N, b: N, width: N) -> N {
 /// The maximum nesting of a formula, as the number of values that wait for an operation.
 pub(super) const MAX_DEPTH: usize = 32;
 
+/// Carries out operations in postfix order on values of any type, and returns the last one. `of` returns the value of
+/// an operation, given its index and its operands; nothing more is carried out once it returns `None`.
+#[inline(always)]
+pub fn fold<T>(steps: &[Step], mut of: impl FnMut(usize, Step, &mut [T]) -> Option<T>) -> Option<T> {
+    let mut waiting = Vec::new();
+    for (index, step) in steps.iter().enumerate() {
+        let start = waiting.len() - step.operands();
+        let value = of(index, *step, &mut waiting[start..])?;
+        waiting.truncate(start);
+        waiting.push(value);
+    }
+    waiting.pop()
+}
+
 /// Returns the maximum number of values that wait for an operation.
 pub fn deepest(steps: &[Step]) -> usize {
     let (mut depth, mut deepest) = (0, 0);
