@@ -27,4 +27,5 @@ mod query;
 mod ranges;
 mod solids;
 mod stability;
+mod torus;
 mod winding;
