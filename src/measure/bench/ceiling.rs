@@ -46,29 +46,29 @@ impl TextbookTest {
             [corner, DVec3::X + 0.1 * DVec3::Z, DVec3::Y]
         });
         for _ in 0..tests.div_ceil((PACKET_SIZE * SHAPES) as u64) {
-            let (mut near, mut met) = ([f64::INFINITY; PACKET_SIZE], [0; PACKET_SIZE]);
+            let (mut near, mut hit_ids) = ([f64::INFINITY; PACKET_SIZE], [0; PACKET_SIZE]);
             let shapes = black_box(&shapes);
             match self {
-                Self::Plane => planes(cpu, rays, shapes, &mut near, &mut met),
-                Self::Sphere => spheres(cpu, rays, shapes, &mut near, &mut met),
-                Self::Triangle => triangles(cpu, rays, shapes, &mut near, &mut met),
+                Self::Plane => planes(cpu, rays, shapes, &mut near, &mut hit_ids),
+                Self::Sphere => spheres(cpu, rays, shapes, &mut near, &mut hit_ids),
+                Self::Triangle => triangles(cpu, rays, shapes, &mut near, &mut hit_ids),
             }
-            black_box((&near, &met));
+            black_box((&near, &hit_ids));
         }
     }
 }
 
 kernels! {
     /// Tests planes, each a point and a normal.
-    fn planes(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
-        each(rays, shapes, near, met, |[point, normal, _], origin, dir| {
+    fn planes(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], hit_ids: &mut [u64]) {
+        each(rays, shapes, near, hit_ids, |[point, normal, _], origin, dir| {
             (*point - origin).dot(*normal) / dir.dot(*normal)
         });
     }
 
     /// Tests spheres of radius 2, given by their centres.
-    fn spheres(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
-        each(rays, shapes, near, met, |[center, ..], origin, dir| {
+    fn spheres(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], hit_ids: &mut [u64]) {
+        each(rays, shapes, near, hit_ids, |[center, ..], origin, dir| {
             let from = origin - *center;
             let (b, c) = (from.dot(dir), from.dot(from) - 4.0);
             // NaN, which fails all comparisons, where the ray misses.
@@ -77,8 +77,8 @@ kernels! {
     }
 
     /// Tests triangles, each a corner and two edges.
-    fn triangles(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
-        each(rays, shapes, near, met, |[corner, one, other], origin, dir| {
+    fn triangles(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], hit_ids: &mut [u64]) {
+        each(rays, shapes, near, hit_ids, |[corner, one, other], origin, dir| {
             let (across, from) = (dir.cross(*other), origin - *corner);
             let inverse = 1.0 / one.dot(across);
             let up = from.cross(*one);
@@ -94,17 +94,17 @@ fn each(
     rays: RayPacket,
     shapes: &[[DVec3; 3]],
     near: &mut [f64],
-    met: &mut [u64],
+    hit_ids: &mut [u64],
     distance: impl Fn(&[DVec3; 3], DVec3, DVec3) -> f64,
 ) {
     let count = near.len();
-    let (rays, met) = (rays.first(count), &mut met[..count]);
+    let (rays, hit_ids) = (rays.first(count), &mut hit_ids[..count]);
     for (shape, id) in shapes.iter().zip(1..) {
         for lane in 0..count {
             let distance = distance(shape, rays.origin.get(lane), rays.dir.get(lane));
             let is_nearer = (distance > 0.0) & (distance < near[lane]);
             near[lane] = if is_nearer { distance } else { near[lane] };
-            met[lane] = if is_nearer { id } else { met[lane] };
+            hit_ids[lane] = if is_nearer { id } else { hit_ids[lane] };
         }
     }
 }
