@@ -1,135 +1,17 @@
-//! `tabray lsp` and `tabray fmt`, as editors and people use them.
+//! `tabray lsp`, as editors use it.
+
+mod client;
 
 use crate::common::program::{folder, outcome, tabray};
 use crate::common::root;
+use client::{Client, marks, shown, uri};
 use insta::Settings;
-use lsp_server::{Message, Notification, Request};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use serde_json::{Value, json};
-use std::collections::VecDeque;
 use std::fs;
-use std::io::BufReader;
-use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use tempfile::TempDir;
-
-/// A client that asks one question after the other.
-struct Client {
-    program: Child,
-    input: ChildStdin,
-    output: BufReader<ChildStdout>,
-    asked: i32,
-    told: VecDeque<Notification>,
-    capabilities: Value,
-}
-
-impl Client {
-    fn start(folder: &TempDir) -> Self {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_tabray"))
-            .arg("lsp")
-            .current_dir(folder.path())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        let input = program.stdin.take().expect("a pipe");
-        let output = BufReader::new(program.stdout.take().expect("a pipe"));
-        let mut client =
-            Self { program, input, output, asked: 0, told: VecDeque::new(), capabilities: Value::Null };
-        let item = json!({ "completionItem": { "snippetSupport": true } });
-        let action = json!({ "disabledSupport": true });
-        let capabilities = json!({ "textDocument": { "completion": item, "codeAction": action } });
-        let begun = client.ask("initialize", json!({ "capabilities": capabilities })).expect("capabilities");
-        assert_eq!(begun["serverInfo"]["name"], "tabray");
-        client.capabilities = begun["capabilities"].clone();
-        client.note("initialized", json!({}));
-        client
-    }
-
-    fn note(&mut self, method: &str, parameters: Value) {
-        let message = Message::from(Notification::new(method.to_owned(), parameters));
-        message.write(&mut self.input).expect("the server reads");
-    }
-
-    /// Asks a question, and returns the answer, or the reason why there is none.
-    /// What is refused for its place in the session has the number that the protocol has for it.
-    fn ask(&mut self, method: &str, parameters: Value) -> Result<Value, String> {
-        self.asked += 1;
-        let message = Message::from(Request::new(self.asked.into(), method.to_owned(), parameters));
-        message.write(&mut self.input).expect("the server reads");
-        loop {
-            match Message::read(&mut self.output).expect("a message").expect("an answer") {
-                Message::Response(response) => {
-                    assert_eq!(response.id, self.asked.into());
-                    let response = serde_json::to_value(response).expect("JSON");
-                    return match response.get("error") {
-                        Some(error) => Err(error["message"].as_str().unwrap_or_default().to_owned()),
-                        None => Ok(response["result"].clone()),
-                    };
-                }
-                Message::Notification(told) => self.told.push_back(told),
-                Message::Request(_) => panic!("the server asks nothing"),
-            }
-        }
-    }
-
-    /// Returns the faults of a file that the server tells next.
-    fn faults(&mut self, uri: &str) -> Value {
-        loop {
-            let told = self.told.pop_front().unwrap_or_else(|| {
-                match Message::read(&mut self.output).expect("a message").expect("a message") {
-                    Message::Notification(told) => told,
-                    other => panic!("{other:?}"),
-                }
-            });
-            if told.method == "textDocument/publishDiagnostics" && told.params["uri"] == uri {
-                return told.params["diagnostics"].clone();
-            }
-        }
-    }
-
-    fn open(&mut self, uri: &str, text: &str) {
-        let document = json!({ "uri": uri, "languageId": "tabray", "version": 1, "text": text });
-        self.note("textDocument/didOpen", json!({ "textDocument": document }));
-    }
-
-    fn end(mut self) {
-        self.ask("shutdown", Value::Null).expect("an answer");
-        self.note("exit", Value::Null);
-        assert_eq!(self.program.wait().expect("an end").code(), Some(0));
-    }
-}
-
-fn uri(folder: &Path, name: &str) -> String {
-    format!("file://{}/{name}", folder.canonicalize().expect("a folder").display())
-}
-
-/// Takes each `^` out of a scene, and returns the positions.
-fn marks(text: &str) -> (String, Vec<Value>) {
-    let mut positions = Vec::new();
-    let mut lines: Vec<String> = Vec::new();
-    for (line, text) in text.lines().enumerate() {
-        let mut kept = String::new();
-        for part in text.split('^') {
-            kept += part;
-            positions.push((line, kept.encode_utf16().count()));
-        }
-        positions.pop();
-        lines.push(kept);
-    }
-    let position = |(line, character)| json!({ "line": line, "character": character });
-    (lines.join("\n") + "\n", positions.into_iter().map(position).collect())
-}
-
-/// Writes an answer with one value on each line.
-fn shown(answer: &Result<Value, String>) -> String {
-    match answer {
-        Ok(Value::Array(all)) if !all.is_empty() => all.iter().map(|one| format!("  {one}\n")).collect(),
-        Ok(one) => format!("  {one}\n"),
-        Err(reason) => format!("  error: {reason}\n"),
-    }
-}
+use std::path::PathBuf;
+use std::process::Command;
 
 const NOTES: &str = r#"# The first
 # of two lines.
@@ -368,9 +250,6 @@ fn what_is_no_message_is_answered_with_the_reason() {
     assert_eq!(out.matches(malformed).count(), 2, "{out}");
 }
 
-const UNTIDY: &str = "camera eye {\npixeldim 8 6 # wide\nworlddim 8 6   viewpoint 4 3 6\n}\n";
-const TIDY: &str = "camera eye\n{\n    pixeldim  8 6 # wide\n    worlddim  8 6\n    viewpoint 4 3 6\n}\n";
-
 #[test]
 fn after_shutdown_and_for_a_second_initialize_the_request_is_refused() {
     let folder = folder();
@@ -401,45 +280,6 @@ fn a_text_of_17_mib_is_refused() {
     client.open(&uri, "sphere a { radius 1 }\n");
     assert!(!client.faults(&uri).as_array().expect("faults").is_empty());
     client.end();
-}
-
-#[test]
-fn fmt_formats_in_place_checks_and_reads_standard_input() {
-    let folder = folder();
-    let path = folder.path().join("a.ray");
-    fs::write(&path, UNTIDY).expect("room");
-    let (status, _, err) = outcome(tabray(&folder).args(["fmt", "--check", "a.ray"]));
-    assert_eq!((status, err.as_str()), (2, "error: a.ray: not formatted\n"));
-    assert_eq!(fs::read_to_string(&path).expect("a file"), UNTIDY);
-    let (status, out, err) = outcome(tabray(&folder).args(["fmt", "a.ray"]));
-    assert_eq!((status, out.len(), err.as_str()), (0, 0, "formatted a.ray\n"));
-    assert_eq!(fs::read_to_string(&path).expect("a file"), TIDY);
-    for arguments in [["fmt", "a.ray"].as_slice(), &["fmt", "--check", "a.ray"]] {
-        let (status, out, err) = outcome(tabray(&folder).args(arguments));
-        assert_eq!((status, out.len(), err.as_str()), (0, 0, ""));
-    }
-    fs::write(&path, UNTIDY).expect("room");
-    let (status, _, err) = outcome(tabray(&folder).args(["fmt", "missing", ".", "a.ray"]));
-    assert_eq!(status, 1, "{err}");
-    assert!(err.contains("cannot read `missing`") && err.ends_with("formatted a.ray\n"), "{err}");
-    let (status, out, _) = outcome(tabray(&folder).args(["fmt", "-"]).write_stdin(UNTIDY));
-    assert_eq!((status, String::from_utf8(out).as_deref()), (0, Ok(TIDY)));
-}
-
-#[test]
-fn fmt_leaves_a_scene_whose_form_has_errors() {
-    let folder = folder();
-    let path = folder.path().join("a.ray");
-    let text = "camera eye {\n  pixeldim 8 6\n";
-    fs::write(&path, text).expect("room");
-    let (status, _, err) = outcome(tabray(&folder).args(["fmt", "a.ray", "none.ray"]));
-    assert_eq!(status, 2);
-    assert!(err.contains("a.ray:2:16") && err.contains("missing `}` for camera `eye`"), "{err}");
-    assert!(err.contains("cannot read `none.ray`"), "{err}");
-    assert_eq!(fs::read_to_string(&path).expect("a file"), text);
-    let mut input = tabray(&folder);
-    let (status, out, _) = outcome(input.args(["fmt", "-"]).write_stdin(b"\xff".as_slice()));
-    assert_eq!((status, out.len()), (2, 0));
 }
 
 #[test]

@@ -15,6 +15,7 @@ mod editor;
 mod failures;
 mod farm;
 mod firsthour;
+mod fmt;
 mod frames;
 mod full_range;
 mod grade;
