@@ -14,27 +14,8 @@ use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::display::Display;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
-use tabray_core::world::sensor::Adaptive;
 use tabray_tools::clock;
-
-/// Numbers of samples per pixel.
-#[derive(Clone, Copy, Debug)]
-pub struct Samples {
-    /// The distribution of the samples.
-    pub sampler: Sampler,
-    /// The number of samples, or the least of the numbers.
-    pub samples: u32,
-    /// The rule by which pixels take more samples.
-    pub adaptive: Option<Adaptive>,
-}
-
-impl Samples {
-    /// Gives a plan these numbers.
-    pub fn set(self, plan: &mut Plan) {
-        (plan.camera.samples, plan.camera.sampler) = (self.samples, self.sampler);
-        plan.set_adaptive(self.adaptive);
-    }
-}
+use tabray_tools::sampling::Samples;
 
 /// The cost and the error of a number of samples. Errors are in levels of 1/255, of shown colours that are not
 /// rounded to levels.

@@ -9,7 +9,9 @@ pub mod diagnosis;
 pub mod identity;
 pub mod pixels;
 pub mod probe;
+pub mod sampling;
 pub mod threads;
+pub mod unchecked;
 pub mod verify;
 
 // Tests read scenes, and so need entity types.

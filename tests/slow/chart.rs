@@ -264,8 +264,9 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     let chosen = choose(&["--max-error", "1%"]);
     let text = String::from_utf8(chosen.stdout).expect("UTF-8");
     // All pixels of a small image are measured.
-    let said = "\nThe marked choice is the fastest with an error of at most 1 % of white (2.55 levels of 255), with a confidence of 99 %. \
-                Errors are in levels of 255. Its own was measured on 1200 of 1200 pixels; that of the whole image is at most what the table says. Choices ";
+    let said = "\nThe marked choice is the fastest with an error of at most 1 % of white (2.55 levels of 255). \
+                Errors are in levels of 255, and were measured on 1200 of 1200 pixels, drawn from all parts of the image; that of \
+                the whole image is at most what the table says, with a confidence of 95 %. Choices ";
     assert!(text.contains(said), "{text}");
     let line = text.lines().last().expect("a command line");
     let mut words = line.split(' ');
@@ -294,20 +295,29 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     let number = |text: &str| most(&samples(text)?[2]);
     assert!(number(&worst) > number(&text), "the worst pixels are worse than the mean: {worst}");
 
-    let never = choose(&["--max-error", "1e-10%"]);
-    assert_eq!(never.status.code(), Some(1));
+    let never = |options: &[&str]| {
+        let never = choose(options);
+        assert_eq!(never.status.code(), Some(1));
+        String::from_utf8_lossy(&never.stderr).into_owned()
+    };
+    let said = never(&["--max-error", "1e-10%"]);
+    let start = "error: no choice was measured to have an error of at most 1e-10 % of white (2.55e-10 levels of 255); the nearest is \
+                 `--samples ";
+    assert!(said.starts_with(start), "{said}");
+    let said = never(&["--max-error", "1e-10%", "--certain"]);
+    let start = "error: no choice is certain to have an error of at most 1e-10 % of white (2.55e-10 levels of 255); the least bound is ";
+    assert!(said.starts_with(start), "{said}");
+    // A bound takes in what may lie in the pixels that are not measured.
+    let bounded = String::from_utf8(choose(&["--max-error", "1%", "--certain"]).stdout).expect("UTF-8");
     assert!(
-        String::from_utf8_lossy(&never.stderr).starts_with(
-            "error: no choice is certain to have an error of at most 1e-10 % of white (2.55e-10 levels of 255); the least bound is "
-        ),
+        bounded.contains("by a bound with a confidence of 99 %") && samples(&bounded).is_some(),
+        "{bounded}"
     );
     let text = String::from_utf8(choose(&["--max-time", "1000"]).stdout).expect("UTF-8");
     let times = text.lines().find(|line| line.starts_with("It takes ")).expect("a line of times");
     assert!(times.contains(" of CPU time for ") && times.contains(" rays of all kinds"), "{text}");
     assert!(text.contains("\nThe marked choice is the one with the least error within 1000 s on "), "{text}");
-    let never = choose(&["--max-time", "1e-9"]);
-    assert_eq!(never.status.code(), Some(1));
-    let said = String::from_utf8_lossy(&never.stderr).into_owned();
+    let said = never(&["--max-time", "1e-9"]);
     let least =
         said.strip_prefix("error: no choice is sure to take at most 0.000000001 s; the fastest may take ");
     let least = least.and_then(|least| least.strip_suffix(" s\n")?.parse::<f64>().ok());

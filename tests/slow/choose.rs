@@ -1,24 +1,30 @@
-//! What `choose --max-error` promises, measured on scenes made at random.
+//! What `choose --max-error` promises, by bounds and by measurement, and the errors that it measures, on scenes made at
+//! random.
 //!
-//! `TABRAY_SCENES=200 cargo test --release --test slow choose -- --nocapture` measures 200 scenes in place of 15, and
-//! prints a table; `TABRAY` names a program other than the one that is built.
+//! `TABRAY_SCENES=200 cargo test --release --test slow choose -- --nocapture` measures 200 scenes in place of few, and
+//! prints tables; `TABRAY` names a program other than the one that is built.
 
+mod free;
 mod made;
 
-use crate::common::model_in;
+use crate::common::{model_in, registry};
 use made::{Made, made};
 use rayon::prelude::*;
 use std::env;
 use std::fs;
+use std::io;
+use std::ops::ControlFlow;
+use std::path::Path;
 use std::process::Command;
 use tabray::render::trace::{Scratch, Tracer};
 use tabray::render::{Flaws, Plan, Renderer};
-use tabray::scene::Model;
+use tabray::scene::{self, Model};
 use tabray::simd::cpu::Cpu;
+use tabray::tools::chart::{self, Estimate, Goal, Progress};
 use tabray::tools::threads::renderer_with;
-use tabray::world::Rgb;
 use tabray::world::sample::{SCRAMBLE, Sampler};
 use tabray::world::sensor::Adaptive;
+use tabray::world::{Accuracy, Rgb};
 use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [48, 36];
@@ -39,13 +45,14 @@ struct Promise {
     bound: f64,
 }
 
-/// Runs `choose` for an error; returns what it says where it promises nothing.
-fn choose(folder: &TempDir, error: &str) -> Result<Promise, String> {
+/// Runs `choose` for an error, with options; returns what it says where it promises nothing.
+fn choose(folder: &TempDir, error: &str, options: &[&str]) -> Result<Promise, String> {
     let program = env::var_os("TABRAY").unwrap_or_else(|| env!("CARGO_BIN_EXE_tabray").into());
     let output = Command::new(program)
         .current_dir(folder.path())
         // A busy machine measures the same, but takes longer.
         .args(["choose", "made.ray", "--max-error", error, "--time-limit", "1h"])
+        .args(options)
         .output()
         .expect("it runs");
     let [said, failed] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
@@ -78,7 +85,8 @@ fn colours(renderer: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> 
 /// Returns the root mean square error of a choice, in levels: against many samples, and against many more in the pixels
 /// that by these would break the promise.
 fn error(renderer: &Renderer, model: &Model, promise: &Promise) -> f64 {
-    let pixels: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|index| [index % SIZE[0], index / SIZE[0]]).collect();
+    let [width, height] = model.camera.value.pixels;
+    let pixels: Vec<_> = (0..width * height).map(|index| [index % width, index / width]).collect();
     let mut plan = Plan::new(model);
     (plan.camera.sampler, plan.camera.samples) = (Sampler::Sobol, promise.samples);
     plan.set_adaptive(promise.most.map(|most| Adaptive { most, error: None }));
@@ -130,7 +138,7 @@ fn promises_are_kept_and_given() {
         let tally = &mut tallies[usize::from(!small.is_empty())];
         tally.scenes += 1;
         let things = small.join(", ");
-        match choose(&folder, asked) {
+        match choose(&folder, asked, &["--certain"]) {
             Ok(promise) => {
                 let error = error(&renderer, &model, &promise);
                 let is_kept = error <= promise.bound;
@@ -164,4 +172,69 @@ fn promises_are_kept_and_given() {
         plain.scenes
     );
     assert!(small.promises > 0, "a promise for a scene with small things");
+}
+
+/// The size of the images whose errors are measured: of each pixel, 4096 true samples are taken.
+const SMALL: [usize; 2] = [32, 24];
+
+/// Receives no progress.
+struct Unlimited;
+
+impl Progress for Unlimited {
+    fn more(&mut self, _units: usize) {}
+
+    fn done(&mut self, _units: usize) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+#[test]
+fn measured_errors_are_near_those_against_many_samples() {
+    let scenes = env::var("TABRAY_SCENES").map_or(4, |count| count.parse().expect("a number of scenes"));
+    let renderer = renderer_with(0).expect("threads");
+    let (mut far, mut low, mut answers, mut kept) = (0, 0, 0_u64, 0);
+    println!(
+        "| scene | samples | measured | at most | against {TRUE_SAMPLES} | ratio | answer | its error | kept |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for seed in 0..scenes {
+        let text = free::free(seed, SMALL);
+        let model = model_in(Path::new(""), &text);
+        let load = |accuracy: Option<Accuracy>| -> io::Result<Model> {
+            let loaded = scene::read(registry(), "scene", Path::new(""), text.as_bytes(), accuracy);
+            Ok(loaded.map_err(|report| io::Error::other(report.to_string()))?.model)
+        };
+        let measured = |goal: Goal| {
+            let estimates = chart::estimates(&load, (goal, false), 0.0, &mut Unlimited).expect("estimates");
+            estimates.all.into_iter().filter(move |one| one.accuracy == estimates.own)
+        };
+        let error = |one: &Estimate| {
+            let Estimate { samples, most, bound, .. } = *one;
+            error(&renderer, &model, &Promise { samples, most, words: one.numbers(), bound: 255.0 * bound })
+        };
+        let choice = ["4", "16", "64", "4..64"][seed as usize % 4];
+        let one = measured(Goal::None).find(|one| one.numbers() == choice).expect("the choice");
+        let [mean, most] = [one.error, one.bound].map(|error| 255.0 * error);
+        let right = error(&one);
+        far += u64::from(mean > 1.5 * right || right > 1.5 * mean);
+        low += usize::from(right > 2.0 * mean);
+        let asked = [2.0, 2.55, 1.0][seed as usize % 3];
+        let answer = measured(Goal::Error { most: asked / 255.0, worst: false })
+            .filter(|one| 255.0 * one.bound <= asked)
+            .min_by(|one, other| one.rays.total_cmp(&other.rays));
+        let told = answer.map_or_else(String::new, |answer| {
+            let error = error(&answer);
+            answers += 1;
+            kept += u64::from(error <= asked);
+            format!("{} | {error:.3} | {}", answer.numbers(), if error <= asked { "yes" } else { "no" })
+        });
+        println!("| {seed} | {choice} | {mean:.3} | {most:.3} | {right:.3} | {:.2} | {told} |", mean / right);
+    }
+    println!(
+        "{scenes} scenes: {far} off by more than 1.5 times, {low} below half; {answers} answers, {kept} kept"
+    );
+    assert!(20 * far <= scenes.max(20), "{far} of {scenes} measured errors are off by more than 1.5 times");
+    assert_eq!(low, 0, "measured errors below half");
+    assert!(10 * answers >= 9 * scenes, "{answers} answers for {scenes} scenes");
+    assert!(20 * (answers - kept) <= answers.max(20), "{kept} of {answers} answers are kept");
 }

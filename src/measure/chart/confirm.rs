@@ -3,9 +3,9 @@
 //! A bound that holds whatever the unmeasured pixels contain needs many measured pixels. Few samples in each suffice,
 //! in addition to those of the choice itself, since their noise is as often too high as too low.
 
+use super::estimate::STAGES;
 use super::goal::{Estimate, Goal};
 use super::needed;
-use super::places::Draw;
 use super::progress::Progress;
 use super::right::Colours;
 use super::sampled::{Errors, Image, doubt_of_each};
@@ -15,6 +15,7 @@ use std::io;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
+use tabray_tools::sampling::places::Draw;
 
 /// The part of the greatest error that an estimate must be below to be worth confirming.
 const LIKELY: f64 = 0.9;
@@ -40,18 +41,13 @@ pub(super) const FEWEST: u32 = 2 * RIGHT[0] + 1;
 /// The maximum number of rays from the viewer in a measurement whose goal is not the error, as a part of the image's.
 const PART: f64 = 0.5;
 
-/// The maximum number of choices that are measured.
+/// The maximum number of choices that are measured in each stage.
 const TRIES: usize = 2;
 
-/// Tells whether a choice is confirmed for a goal.
-pub(super) fn is_for(goal: Goal) -> bool {
-    matches!(goal, Goal::Error { worst: false, .. } | Goal::Time { worst: false, .. })
-}
-
 /// Returns the first choice that is likely to meet a goal, among those of one accuracy by ascending samples.
-pub(super) fn likely(goal: Goal, estimates: &[Estimate]) -> Option<&Estimate> {
+fn likely(goal: Goal, estimates: &[Estimate]) -> Option<&Estimate> {
     match goal {
-        Goal::Error { most, worst: false } => estimates.iter().find(|one| one.error <= LIKELY * most),
+        Goal::Error { most, .. } => estimates.iter().find(|one| one.error <= LIKELY * most),
         _ => goal.first_meeting(estimates),
     }
 }
@@ -98,9 +94,6 @@ pub(super) fn confirm(
     estimates: &mut [Estimate],
     progress: &mut dyn Progress,
 ) -> io::Result<bool> {
-    if !is_for(goal) {
-        return Ok(false);
-    }
     let fixed = &estimates[..known.samples.len()];
     let first = likely(goal, fixed).map(|first| (first.rays, first.samples));
     let is_cheaper = |one: &Estimate| first.is_none_or(|(rays, _)| one.rays <= GAIN * rays);
@@ -165,7 +158,7 @@ fn confirm_one(
         if is_error { draw.rest() } else { (PART * estimate.rays * draw.all() as f64 / of_pixel) as usize };
     // All but one: the samples that count as right are too few for statements about a wholly known image.
     let pixels = draw.first(most.min(draw.rest() - 1));
-    let doubt = doubt_of_each(TRIES * looks(pixels.len()));
+    let doubt = doubt_of_each(STAGES.len() * TRIES * looks(pixels.len()));
     let (mut errors, mut next) = (Errors::new(1), AT_ONCE);
     for part in pixels.chunks(AT_ONCE) {
         progress.more((part.len() as f64 * of_pixel / 10.0) as usize);
@@ -178,7 +171,7 @@ fn confirm_one(
             continue;
         }
         next = after(count);
-        let [error, bound] = errors.bounds(0, image, false, doubt);
+        let [error, bound] = errors.bounds(0, image, goal.is_worst(), doubt);
         if bound < estimate.bound {
             (estimate.error, estimate.bound) = (error, bound);
             estimate.pixels = count + missed.pixels.len();

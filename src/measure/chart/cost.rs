@@ -3,8 +3,6 @@
 //! A packet is traced as in a render, while the other threads trace others, and timed by the clock of its own thread,
 //! which stands still while other programs run.
 
-use super::places::{self, Pixels};
-use super::traced::{self, Group, Rays};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
@@ -13,6 +11,8 @@ use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
+use tabray_tools::sampling::places::{self, Pixels};
+use tabray_tools::sampling::traced::{self, Group, Rays};
 
 /// The numbers of packets that are timed at first: more only where they are fast.
 const FEWEST: usize = 4;

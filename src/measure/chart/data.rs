@@ -2,6 +2,7 @@
 
 use super::machine::Machine;
 use super::times::Times;
+use tabray_tools::unchecked::Unchecked;
 
 /// All charted data of a scene.
 #[derive(Clone)]
@@ -12,6 +13,8 @@ pub struct Chart {
     pub machine: Machine,
     /// One panel for each question.
     pub panels: Vec<Panel>,
+    /// The entity types whose hits cannot be proven.
+    pub unchecked: Vec<Unchecked>,
     /// Whether the measurement was completed.
     pub is_whole: bool,
 }
@@ -192,6 +195,11 @@ impl Chart {
     pub fn has_faults(&self, choice: &str) -> bool {
         let mut points = self.panels.iter().flat_map(|panel| &panel.points);
         points.any(|point| point.name == choice && point.wrong.faults() > 0)
+    }
+
+    /// Tells whether a point is kept from the front by what its choice does in another panel.
+    pub fn is_barred(&self, point: &Point) -> bool {
+        point.wrong.faults() == 0 && self.has_faults(&point.name)
     }
 
     fn middle(&self, of: impl Fn(&Times) -> f64) -> f64 {

@@ -165,7 +165,7 @@ fn legend(chart: &Chart, width: f64) -> Vec<LegendEntry> {
 fn notes() -> [String; 2] {
     [
         "hollow: some hits are missed, invented, not the first or inaccurate (percent of all rays); line: the Pareto front, \
-         where no choice without them is both faster and more exact"
+         where no choice without them is both faster and more exact; *: such hits in another panel"
             .to_owned(),
         format!(
             "times: packets of up to {PACKET_SIZE} rays on one thread, as in a render; where a hit is searched for, all \
@@ -237,20 +237,21 @@ fn draw_panel<D: DrawingBackend>(
         (0..panel.points.len()).filter(|index| !panel.points[*index].error.is_nan()).collect();
     order.sort_by_key(|index| (!panel.points[*index].is_default, !is_on_front[*index]));
     let points: Vec<&Point> = order.iter().map(|index| &panel.points[*index]).collect();
-    draw_points(canvas, panel, &points, &lines, &axes)
+    draw_points(canvas, (chart, panel), &points, &lines, &axes)
 }
 
 /// Draws points with their labels, which keep clear of lines; the most important ones come first.
 fn draw_points<D: DrawingBackend>(
     canvas: &Canvas<D>,
-    panel: &Panel,
+    (chart, panel): (&Chart, &Panel),
     points: &[&Point],
     lines: &[Segment],
     axes: &Axes,
 ) -> io::Result<()> {
     let places: Vec<_> = points.iter().map(|point| axes.place(point)).collect();
     let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(TEXT) };
-    let names: Vec<String> = points.iter().map(|point| name(panel, point)).collect();
+    let barred = |point: &Point| if chart.is_barred(point) { "*" } else { "" };
+    let names: Vec<String> = points.iter().map(|point| name(panel, point) + barred(point)).collect();
     // With a gap between neighbours, so that two numbers do not look like one.
     let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 19.0);
     let sizes: Vec<_> = names.iter().zip(points).map(size).collect();

@@ -1,19 +1,18 @@
 //! A quick measurement of the effects of accuracy and samples on a scene, for a choice among them.
 //!
-//! Errors are measured against more samples, on pixels drawn at random and on all pixels that may show things smaller
-//! than the gaps between samples. They are given with an upper bound that holds with a stated confidence. The choice
-//! of the pixels and their number depend on the scene alone, unless time runs out.
+//! Errors are measured against other samples, on pixels drawn from all strata of the image, and on all pixels that may
+//! show things smaller than the gaps between samples, unless these are too many. The pixels depend on the scene alone, and
+//! so does their number, unless time runs out.
 
 use super::candidate::Load;
 use super::confirm::{self, Known, Plans};
 use super::data::{Family, Panel, Point, Subject, WrongHits};
 use super::goal::{Estimate, Estimates, Goal, Small};
 use super::needed;
-use super::places::Draw;
 use super::progress::Progress;
-use super::right::{Colours, Right};
-use super::sampled::{Errors, Image, doubt_of_each};
-use super::small::{Missed, SmallThings};
+use super::right::Colours;
+use super::sampled::{self, Errors};
+use super::small::SmallThings;
 use super::times::Times;
 use super::timings::{self, Cost, Timings, plan};
 use std::io;
@@ -24,19 +23,25 @@ use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::sensor::Sensor;
+use tabray_tools::sampling::error::PixelError;
+use tabray_tools::sampling::places::Draw;
+use tabray_tools::sampling::right::Right;
+use tabray_tools::sampling::strata::{Drawn, Strata};
 use tabray_tools::threads::renderer_with;
 
 /// A part of a measurement: numbers of samples to choose from.
 #[derive(Clone, Copy)]
-struct Stage {
+pub(super) struct Stage {
     samples: &'static [u32],
     /// The number of samples that they are compared with.
     against: u32,
 }
 
-const STAGES: [Stage; 2] = [
+pub(super) const STAGES: [Stage; 4] = [
     Stage { samples: &[1, 2, 4, 8, 16, 32, 64], against: 256 },
     Stage { samples: &[128, 256], against: 1024 },
+    Stage { samples: &[512, 1024], against: 4096 },
+    Stage { samples: &[2048, 4096], against: 8192 },
 ];
 
 impl Stage {
@@ -46,34 +51,34 @@ impl Stage {
     }
 }
 
-/// The least ratio of the number of samples of the reference to that of an adaptive choice.
-const MORE: u32 = 4;
+/// The least and the greatest numbers of rays that a stage may take, and the fraction of the image's rays between them.
+const RAYS: [f64; 2] = [2e6, 8e6];
+const PART: f64 = 0.25;
 
-/// The number of rays that a measurement may always take, doubled for the worst pixels. Otherwise it may take this
-/// fraction of the image's rays.
-const MIN_RAYS: f64 = 1e6;
-const PART: f64 = 0.5;
+/// The number of pixels by which others are drawn.
+const LOOKED_AT: usize = 1 << 17;
+
+/// The greatest numbers of samples of pixels that may show small things: for what is measured, and for bounds.
+const SMALL: [usize; 2] = [1_500_000, 4_000_000];
 
 /// The number of samples that an image must need for pixels with different numbers of them to be a choice.
 const ADAPTIVE_FROM: u32 = 16;
-
-/// The maximum number of bounds from which one is chosen while choices are compared.
-const COMPARED: usize = 128;
 
 /// The number of pixels that are measured before the first check whether they suffice, and before a check of the
 /// time.
 const FIRST: usize = 1024;
 const FEWEST: usize = 128;
 
-/// Measures the scene's own accuracy with several numbers of samples, and the accuracies that are clearly faster. A
-/// render begins with work of this CPU time, in seconds.
+/// Measures the scene's own accuracy with several numbers of samples, and the accuracies that are clearly faster. If
+/// bounds are to be certain, the choices that are likely to meet the goal get one. A render begins with work of this CPU
+/// time, in seconds.
 ///
 /// # Errors
 /// Returns the errors of `load` and of starting threads, and `Interrupted` if `progress` breaks off before enough is
 /// known.
 pub fn estimates(
     load: Load,
-    goal: Goal,
+    (goal, is_certain): (Goal, bool),
     beginning: f64,
     progress: &mut dyn Progress,
 ) -> io::Result<Estimates> {
@@ -95,28 +100,25 @@ pub fn estimates(
     let kept: Vec<_> = (0..models.len()).filter(|index| *index == 0 || gains[index - 1]).collect();
     // The most exact of the accuracies is the truth.
     let right = if matches!(own, Accuracy::Exact | Accuracy::Strict) { 0 } else { 1 };
-    let truth = plan(models[right].1);
-    let [width, height] = truth.camera.pixels;
-    let is_whole = (width * height) as f64 * f64::from(STAGES[0].rays_of_pixel(kept.len())) <= MIN_RAYS;
-    let seen = if is_whole { STAGES[0].against } else { confirm::FEWEST };
-    let mut small = match goal {
-        Goal::None => SmallThings::none(truth.camera.display()),
-        _ => SmallThings::find(&truth, &threads, goal.error(), seen),
-    };
-    small.measure(&truth, &threads, goal.error(), progress)?;
-    let mut study = Study { threads, models: &models, right, kept, timings, goal };
+    let mut truth = plan(models[right].1);
+    let mut small = SmallThings::find(&truth, &threads, (goal.error(), is_certain), confirm::FEWEST);
+    small.measure(&mut truth, &threads, (goal.error(), SMALL[usize::from(is_certain)]), progress)?;
+    let found = small.pixels();
+    let special = if small.is_measured() { [&found[..], &[]] } else { [&[], &found[..]] };
+    let strata = Strata::new(&mut truth, &threads, LOOKED_AT, special);
+    let mut study = Study { threads, models: &models, right, kept, timings, goal, is_certain };
     let mut last = None;
     for stage in STAGES {
-        let estimates = study.measure(stage, &small, progress)?;
+        let estimates = study.measure(stage, (&strata, &small), progress)?;
         let is_met = match goal {
             Goal::Error { most, .. } => {
-                let is_hopeless = estimates.small.missed > most;
+                let is_hopeless = is_certain && estimates.small.missed > most;
                 is_hopeless || estimates.all.iter().any(|one| one.bound <= most)
             }
             Goal::None => true,
             Goal::Time { .. } => {
                 let met = goal.first_meeting(&estimates.all[..stage.samples.len()]);
-                met.is_some_and(|met| Some(&met.samples) < stage.samples.last())
+                met.is_none_or(|met| Some(&met.samples) < stage.samples.last())
             }
         };
         let before = last.replace(estimates);
@@ -142,7 +144,7 @@ pub fn estimates(
 pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel> {
     let model = load(None)?;
     let Sensor { samples, pixels: [width, height], .. } = model.camera.value;
-    let estimates = estimates(load, Goal::None, 0.0, progress)?;
+    let estimates = estimates(load, (Goal::None, false), 0.0, progress)?;
     let all = (width * height) as f64;
     let point = |one: &Estimate| {
         let seconds = one.cost.tracing.mean / all;
@@ -166,7 +168,7 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
     let Estimates { pixels, against, .. } = estimates;
     let most = estimates.all.iter().map(|one| one.pixels).max().unwrap_or(0);
     Ok(Panel {
-        title: "the whole image: accuracy and samples together".to_owned(),
+        title: "the whole image: accuracy and samples".to_owned(),
         note: format!("{most} of {pixels} pixels, against {against} samples"),
         subject: Subject::Whole,
         points: estimates.all.iter().map(point).collect(),
@@ -174,7 +176,7 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
 }
 
 /// The pixels that were drawn and measured so far.
-struct DrawnPixels<'m> {
+struct MeasuredPixels<'m> {
     /// The plan whose colours count as right.
     truth: Plan<'m>,
     /// Their errors for each accuracy.
@@ -184,7 +186,7 @@ struct DrawnPixels<'m> {
     is_short: bool,
 }
 
-impl DrawnPixels<'_> {
+impl MeasuredPixels<'_> {
     /// Measures the further ones of these pixels.
     fn measure(
         &mut self,
@@ -195,16 +197,31 @@ impl DrawnPixels<'_> {
         progress: &mut dyn Progress,
     ) -> io::Result<()> {
         // Few enough that the time is checked often.
-        for pixels in pixels[self.errors[0].pixels()..].chunks(FEWEST) {
+        for pixels in pixels[self.rights.len()..].chunks(FEWEST) {
             if self.is_short {
                 break;
             }
             let mut colours = Colours { threads, pixels, progress };
             let rights = colours.right(&mut self.truth, against / 2)?;
-            Errors::add_each(&mut self.errors, &mut colours, plans, samples, &rights)?;
-            self.rights.extend(rights);
+            self.add(&mut colours, samples, plans, rights)?;
             self.is_short = progress.is_late();
         }
+        Ok(())
+    }
+
+    /// Measures pixels whose right colours are known.
+    fn add(
+        &mut self,
+        colours: &mut Colours,
+        samples: &[u32],
+        plans: &mut [Plan],
+        rights: Vec<Right>,
+    ) -> io::Result<()> {
+        for (plan, errors) in plans.iter_mut().zip(&mut self.errors) {
+            let choices = samples.iter().map(|samples| colours.of(plan, *samples));
+            errors.add(&choices.collect::<io::Result<Vec<_>>>()?, &rights);
+        }
+        self.rights.extend(rights);
         Ok(())
     }
 }
@@ -220,6 +237,7 @@ struct Study<'m> {
     kept: Vec<usize>,
     timings: Timings,
     goal: Goal,
+    is_certain: bool,
 }
 
 impl Study<'_> {
@@ -227,30 +245,31 @@ impl Study<'_> {
     fn needed(
         &mut self,
         (accuracy, model): (Accuracy, &Model),
-        pixels: &[[usize; 2]],
+        (drawn, small): (&Drawn, &SmallThings),
         right: &[Right],
-        against: u32,
-        (all, drawn, missed): (usize, usize, &Missed),
+        most: u32,
     ) -> Vec<Estimate> {
-        let mut measured = needed::measure(model, &self.threads, (pixels, drawn), against / MORE);
+        let mut measured = needed::measure(model, &self.threads, &drawn.pixels[..right.len()], most);
         let estimate = |one: &mut needed::MeasuredChoice| {
-            let (mut errors, mut small, [samples, most]) = (Errors::new(1), Errors::new(1), one.limits);
-            let of_small = one.colours.split_off(drawn);
-            errors.add(&[take(&mut one.colours)], &right[..drawn]);
-            small.add(&[of_small], &right[drawn..]);
-            let image = Image { all, small: &small, missed };
-            let [error, bound] = errors.bounds(0, image, self.goal.is_worst(), doubt_of_each(COMPARED));
-            let (rays, worst) = (one.rays, errors.worst(0).max(small.worst(0)));
+            let (mut errors, [samples, most]) = (Errors::new(1), one.limits);
+            errors.add(&[take(&mut one.colours)], right);
+            // Tiles differ in their samples, and there are fewer of them than pixels.
+            let rays = drawn.mean(one.samples.iter().map(|samples| *samples as f64)) + one.timing.probes();
             let cost = self.timings.cost_of(rays, &one.timing);
-            let pixels = pixels.len();
-            Estimate { accuracy, samples, most: Some(most), rays, cost, error, bound, worst, pixels }
+            Estimate {
+                samples,
+                most: Some(most),
+                rays,
+                cost,
+                ..self.estimate(accuracy, (drawn, small), errors.of(0))
+            }
         };
         let mut estimates: Vec<_> = measured.iter_mut().map(estimate).collect();
         let met = self.goal.first_meeting(&estimates).map(|met| met.most);
         for (one, estimate) in measured.iter_mut().zip(&mut estimates) {
             if met == Some(estimate.most) || self.goal.is_none() {
                 needed::refine(model, &self.threads, one.limits, &mut one.timing);
-                estimate.cost = self.timings.cost_of(one.rays, &one.timing);
+                estimate.cost = self.timings.cost_of(estimate.rays, &one.timing);
             }
         }
         estimates
@@ -290,7 +309,7 @@ impl Study<'_> {
     fn measure(
         &mut self,
         stage: Stage,
-        small: &SmallThings,
+        (strata, small): (&Strata, &SmallThings),
         progress: &mut dyn Progress,
     ) -> io::Result<Estimates> {
         let (goal, Stage { samples, against }) = (self.goal, stage);
@@ -299,104 +318,113 @@ impl Study<'_> {
             self.time(*index, samples, plan, progress)?;
         }
         let own = self.models[0];
-        let draw = Draw::new(own.1.camera.value.pixels, small.pixels());
-        let (all, rest, missed) = (draw.all(), draw.rest(), &small.missed());
-        let mut drawn = DrawnPixels {
+        let [width, height] = own.1.camera.value.pixels;
+        let all = width * height;
+        let mut drawn = strata.drawn();
+        let mut pixels = MeasuredPixels {
             truth: plan(self.models[self.right].1),
             errors: vec![Errors::new(samples.len()); plans.len()],
             rights: Vec::new(),
             is_short: false,
         };
-        // The pixels that may show small things are all measured.
-        let mut of_small = drawn.errors.clone();
-        if small.is_measured() {
-            let mut colours = Colours { threads: &self.threads, pixels: &small.pixels(), progress };
-            Errors::add_each(&mut of_small, &mut colours, &mut plans, samples, &small.right())?;
-        }
-        let of_pixel = stage.rays_of_pixel(plans.len());
-        // A small image has fewer pixels than that.
-        let most =
-            |picture| ((self.goal_rays(picture, all) / f64::from(of_pixel)) as usize).max(FEWEST).min(rest);
-        let mut next = FIRST;
+        // The pixels that may show small things are all measured, unless they are too many.
+        let alone = drawn.pixels.len();
+        let mut colours = Colours { threads: &self.threads, pixels: &drawn.pixels, progress };
+        pixels.add(&mut colours, samples, &mut plans, if alone > 0 { small.right() } else { Vec::new() })?;
+        let of_pixel = f64::from(stage.rays_of_pixel(plans.len()));
+        let most = |picture: u32| {
+            let rays = (PART * f64::from(picture) * all as f64).clamp(RAYS[0], RAYS[1]);
+            (alone + (rays / of_pixel) as usize).min(strata.count())
+        };
+        // Of a small image, all pixels are measured.
+        let mut next = if most(0) == strata.count() { most(0) } else { most(0).min(alone + FIRST) };
         loop {
-            let wanted = next.min(rest);
-            if wanted == rest {
-                drawn.errors.fill(Errors::new(samples.len()));
-                drawn.rights.clear();
-            }
-            let pixels = draw.first(wanted);
-            progress.more((wanted - drawn.errors[0].pixels()) * of_pixel as usize / 10);
-            drawn.measure(&self.threads, stage, &mut plans, &pixels, progress)?;
-            let measured = drawn.errors[0].pixels();
-            let mut estimates = self.estimates(samples, &drawn.errors, &of_small, (all, missed));
-            let is_all = measured == rest;
-            let met = match is_all {
-                true => goal.first_meeting(&estimates[..samples.len()]),
-                false => confirm::likely(goal, &estimates[..samples.len()]),
-            };
-            let picture = met.map_or(samples[samples.len() - 1], |met| met.samples);
-            if !drawn.is_short && measured < most(picture) {
+            let before = drawn.pixels.len();
+            drawn.draw(next);
+            progress.more((drawn.pixels.len() - before) * of_pixel as usize / 10);
+            pixels.measure(&self.threads, stage, &mut plans, &drawn.pixels, progress)?;
+            let mut estimates = self.estimates(samples, (&drawn, small), &pixels.errors);
+            let fixed = &estimates[..samples.len()];
+            let picture = goal.first_meeting(fixed).map_or(samples[samples.len() - 1], |met| met.samples);
+            if !pixels.is_short && next < most(picture) && !goal.is_clear(fixed) {
                 next = (2 * next).min(most(picture));
                 continue;
             }
-            if !drawn.is_short && picture >= ADAPTIVE_FROM {
-                let right = [&drawn.rights[..], &small.right()].concat();
-                let pixels = [&pixels[..measured], &small.pixels()].concat();
-                estimates.extend(self.needed(own, &pixels, &right, against, (all, measured, missed)));
+            if !pixels.is_short && picture >= ADAPTIVE_FROM {
+                estimates.extend(self.needed(
+                    own,
+                    (&drawn, small),
+                    &pixels.rights,
+                    samples[samples.len() - 1],
+                ));
                 let _ = progress.done(0);
             }
-            if !drawn.is_short && !is_all {
-                let known = Known { errors: &drawn.errors[0], samples, small, missed, draw: &draw };
-                let plans = Plans { threads: &self.threads, model: own.1, truth: &mut drawn.truth };
-                drawn.is_short = confirm::confirm(goal, plans, &known, &mut estimates, progress)?;
+            let missed = &small.missed();
+            if self.is_certain && !self.is_all(pixels.rights.len(), small) {
+                // What is measured is not certain.
+                estimates.iter_mut().for_each(|one| one.bound = f64::INFINITY);
+                let draw = &Draw::new([width, height], small.pixels());
+                let known = Known { errors: &pixels.errors[0], samples, small, missed, draw };
+                let plans = Plans { threads: &self.threads, model: own.1, truth: &mut pixels.truth };
+                pixels.is_short |= confirm::confirm(goal, plans, &known, &mut estimates, progress)?;
             }
             let of_accuracy = estimates[..plans.len() * samples.len()].chunks_mut(samples.len());
             for ((index, plan), estimates) in self.kept.clone().iter().zip(&mut plans).zip(of_accuracy) {
                 self.refine(*index, estimates, plan, progress);
             }
             let small = Small { pixels: missed.pixels.len(), missed: missed.error(all) };
-            let is_short = drawn.is_short;
+            let is_short = pixels.is_short;
             return Ok(Estimates { all: estimates, own: own.0, pixels: all, small, against, is_short });
         }
     }
 
-    /// Returns the number of rays that a measurement of an image of this many pixels may take, if `samples` of each
-    /// pixel meet the goal.
-    fn goal_rays(&self, samples: u32, pixels: usize) -> f64 {
-        let least = if self.goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
-        // A choice that is to be confirmed is measured later, on more pixels and with fewer samples.
-        let part = if confirm::is_for(self.goal) { 0.0 } else { PART };
-        (part * f64::from(samples) * pixels as f64).max(least)
-    }
-
-    /// Estimates each number of samples of each accuracy, from the errors of the pixels that were drawn and of those
-    /// that may show small things.
+    /// Estimates each number of samples of each accuracy, from the errors of the pixels that were drawn.
     fn estimates(
         &self,
         samples: &[u32],
+        (drawn, small): (&Drawn, &SmallThings),
         errors: &[Errors],
-        of_small: &[Errors],
-        (all, missed): (usize, &Missed),
     ) -> Vec<Estimate> {
-        let of_accuracy = |(index, (errors, small)): (&usize, (&Errors, &Errors))| {
-            let (accuracy, image) = (self.models[*index].0, Image { all, small, missed });
-            let choice = |(place, samples): (usize, &u32)| {
-                let [error, bound] =
-                    errors.bounds(place, image, self.goal.is_worst(), doubt_of_each(COMPARED));
-                Estimate {
-                    accuracy,
-                    samples: *samples,
-                    most: None,
-                    rays: f64::from(*samples),
-                    cost: self.timings.cost(*index, *samples),
-                    error,
-                    bound,
-                    worst: errors.worst(place).max(small.worst(place)),
-                    pixels: errors.pixels() + missed.pixels.len(),
-                }
+        let of_accuracy = |(index, errors): (&usize, &Errors)| {
+            let choice = |(place, samples): (usize, &u32)| Estimate {
+                samples: *samples,
+                rays: f64::from(*samples),
+                cost: self.timings.cost(*index, *samples),
+                ..self.estimate(self.models[*index].0, (drawn, small), errors.of(place))
             };
             samples.iter().enumerate().map(choice).collect::<Vec<_>>()
         };
-        self.kept.iter().zip(errors.iter().zip(of_small)).flat_map(of_accuracy).collect()
+        self.kept.iter().zip(errors).flat_map(of_accuracy).collect()
+    }
+
+    /// Tells whether so many measured pixels are all of the image, so that nothing is left to be confirmed.
+    fn is_all(&self, pixels: usize, small: &SmallThings) -> bool {
+        let [width, height] = self.models[0].1.camera.value.pixels;
+        small.is_measured() && pixels == width * height
+    }
+
+    /// Estimates the error of a choice; its samples and its cost are yet to be told.
+    fn estimate(
+        &self,
+        accuracy: Accuracy,
+        (drawn, small): (&Drawn, &SmallThings),
+        errors: &[PixelError],
+    ) -> Estimate {
+        let error = if self.goal.is_worst() { drawn.percentile(errors) } else { drawn.rms(errors) };
+        Estimate {
+            accuracy,
+            samples: 0,
+            most: None,
+            rays: 0.0,
+            cost: Cost::default(),
+            error: error.mean,
+            bound: if self.is_certain && self.is_all(errors.len(), small) {
+                sampled::bound_of_all(errors, &small.missed(), self.goal.is_worst())
+            } else {
+                error.most
+            },
+            worst: errors.iter().map(|error| error.worst).fold(0.0, f64::max),
+            pixels: errors.len(),
+        }
     }
 }

@@ -53,6 +53,7 @@ pub fn json(chart: &Chart) -> String {
         processor: &chart.machine.processor,
         scene: &chart.scene,
         waited: chart.waited(),
+        unchecked: chart.unchecked.iter().map(ToString::to_string).collect(),
         whole: chart.is_whole,
     })
 }
@@ -71,6 +72,8 @@ struct Document<'c> {
     /// The processor, the level of CPU instructions that is used, and the number of its threads.
     processor: &'c str,
     scene: &'c str,
+    /// What is not checked of the hits, one sentence for each entity type without an equation.
+    unchecked: Vec<String>,
     /// The time that rounds waited for other work of the machine, as a fraction of the time that they took: the median
     /// over all choices.
     waited: f64,

@@ -6,6 +6,10 @@ use tabray_core::world::accuracy::Accuracy;
 /// The error for which small things are measured where none is given: a level.
 const SMALL_ERROR: f64 = 1.0 / 255.0;
 
+/// The greatest ratio of an upper limit to an error that is known well enough, and an error that is as good as none.
+const KNOWN: f64 = 1.3;
+const NOTHING: f64 = 0.05 / 255.0;
+
 /// The goal of a choice.
 #[derive(Clone, Copy)]
 pub enum Goal {
@@ -43,7 +47,8 @@ pub struct Estimate {
     pub cost: Cost,
     /// The measured error, where 1 is white.
     pub error: f64,
-    /// The upper bound of the error of the whole image, with a confidence of 99 %.
+    /// The upper limit of the error of the whole image: as measured, with a confidence of 95 %, or a bound, with one of
+    /// 99 %.
     pub bound: f64,
     /// The largest measured error of a pixel, where 1 is white.
     pub worst: f64,
@@ -89,6 +94,19 @@ impl Goal {
             Self::Error { most, .. } => estimates.iter().find(|one| one.bound <= most),
             Self::Time { most, .. } => estimates.iter().rfind(|one| one.cost.time.range[1] <= most),
             Self::None => None,
+        }
+    }
+
+    /// Tells whether more pixels would hardly tell more about these choices of one accuracy.
+    pub(super) fn is_clear(self, estimates: &[Estimate]) -> bool {
+        let is_known = |one: &Estimate| one.bound <= KNOWN * one.error.max(NOTHING);
+        match self {
+            Self::Error { most, .. } => match estimates.iter().find(|one| one.error <= most) {
+                Some(one) => one.bound <= most && is_known(one),
+                None => estimates.last().is_some_and(|last| last.error > KNOWN * most),
+            },
+            Self::Time { .. } => self.first_meeting(estimates).is_none_or(is_known),
+            Self::None => estimates.iter().all(is_known),
         }
     }
 

@@ -6,7 +6,6 @@ use super::clock;
 use super::data::{Panel, Point, Subject, WrongHits, WrongHitsOf};
 use super::judgement::{Judgement, Known, Pair, Truth};
 use super::packets::Packet;
-use super::places::{spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
 use std::hint::black_box;
@@ -22,6 +21,7 @@ use tabray_core::text::visible;
 use tabray_core::world::any_shape::AnyShape;
 use tabray_core::world::certify::{Enclosure, Precision};
 use tabray_exact::roots::bisection::bisect;
+use tabray_tools::sampling::places::{spread, tiles};
 
 /// The approximate numbers of pairs of a ray and an object in a set of camera rays and in one of grazing rays.
 pub const PAIRS: [usize; 2] = [20_000, 4_000];

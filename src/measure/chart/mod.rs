@@ -28,7 +28,6 @@ mod machine;
 mod needed;
 mod packets;
 mod pictures;
-mod places;
 mod progress;
 mod right;
 mod sampled;
@@ -36,7 +35,6 @@ mod small;
 mod study;
 mod times;
 mod timings;
-mod traced;
 mod verdict;
 
 pub use candidate::Load;
@@ -55,6 +53,8 @@ pub use verdict::words;
 use std::io;
 use std::ops::ControlFlow;
 use study::Study;
+use tabray_core::render::plan::Plan;
+use tabray_tools::unchecked;
 
 /// Measures the cost and the error of a scene's choices. If `progress` breaks off a panel, the others are kept.
 ///
@@ -63,6 +63,7 @@ use study::Study;
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
     let study = Study::new(load)?;
     let mut chart = Chart::empty(scene);
+    chart.unchecked = unchecked::of(&Plan::new(&study.candidates[study.default].model));
     chart.is_whole = study.run(load, &mut chart.panels, progress).is_continue();
     Ok(chart)
 }
@@ -86,7 +87,13 @@ pub fn wrong_hits(
 impl Chart {
     /// Makes the chart of a scene without any measurement.
     pub fn empty(scene: &str) -> Self {
-        Self { scene: scene.to_owned(), machine: Machine::here(), panels: Vec::new(), is_whole: false }
+        Self {
+            scene: scene.to_owned(),
+            machine: Machine::here(),
+            panels: Vec::new(),
+            unchecked: Vec::new(),
+            is_whole: false,
+        }
     }
 }
 

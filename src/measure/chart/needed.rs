@@ -1,14 +1,16 @@
 //! Pixels that take as many samples as they need, measured for `choose`.
 
 use super::cost::Timing;
-use super::pictures::ADAPTIVE;
-use super::traced;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::scene::model::Model;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
 use tabray_core::world::sensor::Adaptive;
+use tabray_tools::sampling::traced;
+
+/// The least and the greatest numbers of samples that are compared.
+const ADAPTIVE: [[u32; 2]; 5] = [[4, 16], [4, 64], [4, 256], [16, 1024], [64, 4096]];
 
 /// The approximate number of rays of all choices together for a pixel that is measured alone, with the probes around
 /// it.
@@ -18,20 +20,18 @@ pub(super) const RAYS: u32 = 120;
 pub(super) struct MeasuredChoice {
     /// The least and the greatest number of samples.
     pub limits: [u32; 2],
-    /// The colours of the pixels as they are shown.
+    /// The colours of the pixels as they are shown, and their numbers of samples.
     pub colours: Vec<Rgb>,
-    /// The mean number of rays from the viewer for a pixel: its samples, and its part of the probes.
-    pub rays: f64,
+    pub samples: Vec<u64>,
     /// The CPU time of its packets.
     pub timing: Timing,
 }
 
-/// Measures the choices whose greatest number of samples is at most `most`. The rays are those of the first `spread`
-/// pixels, which are spread over the image.
+/// Measures the choices whose greatest number of samples is at most `most`.
 pub(super) fn measure(
     model: &Model,
     threads: &Renderer,
-    (pixels, spread): (&[[usize; 2]], usize),
+    pixels: &[[usize; 2]],
     most: u32,
 ) -> Vec<MeasuredChoice> {
     let mut plan = plan(model);
@@ -39,11 +39,8 @@ pub(super) fn measure(
     choices
         .map(|limits| {
             set(&mut plan, limits);
-            let (mut all, samples) = colours(threads, &plan, &pixels[..spread]);
-            all.extend(colours(threads, &plan, &pixels[spread..]).0);
-            let timing = Timing::begun(&plan, threads, None);
-            // Tiles differ in their samples, and there are fewer of them than pixels.
-            MeasuredChoice { limits, colours: all, rays: samples + timing.probes(), timing }
+            let (colours, samples) = colours(threads, &plan, pixels);
+            MeasuredChoice { limits, colours, samples, timing: Timing::begun(&plan, threads, None) }
         })
         .collect()
 }
@@ -67,10 +64,9 @@ pub(super) fn set(plan: &mut Plan, [least, most]: [u32; 2]) {
     plan.set_adaptive(Some(Adaptive { most, error: None }));
 }
 
-/// Returns the colours of pixels as they are shown, and the mean of their numbers of samples.
-pub(super) fn colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, f64) {
+/// Returns the colours of pixels as they are shown, and their numbers of samples.
+pub(super) fn colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, Vec<u64>) {
     let display = plan.camera.display();
     let (colours, samples) = traced::apart(threads, plan, pixels);
-    let shown = colours.into_iter().map(|colour| display.shown(colour)).collect();
-    (shown, samples as f64 / pixels.len().max(1) as f64)
+    (colours.into_iter().map(|colour| display.shown(colour)).collect(), samples)
 }

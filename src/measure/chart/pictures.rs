@@ -6,12 +6,9 @@
 use super::clock;
 use super::colours::{Difference, difference};
 use super::data::{Family, Panel, Point, Subject, WrongHits};
-use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
 use super::times::Times;
-use super::traced;
-use crate::sampling::Samples;
 use glam::DVec2;
 use std::ops::ControlFlow;
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
@@ -24,6 +21,9 @@ use tabray_core::scene::model::Model;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{Sample, Sampler};
 use tabray_core::world::sensor::Adaptive;
+use tabray_tools::sampling::Samples;
+use tabray_tools::sampling::places::{Pixels, spread, tiles};
+use tabray_tools::sampling::traced;
 
 /// The number of samples per pixel of an image that counts as true. It serves as a reference for up to a quarter as
 /// many samples.
@@ -166,7 +166,7 @@ pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Op
         Point { is_default, ..point(name, Family::Own, times, off, (compared.pixels.len(), 1)) }
     });
     ControlFlow::Continue(Some(Panel {
-        title: "reflections and transmissions on a path, at most".to_owned(),
+        title: "reflections and transmissions, at most".to_owned(),
         note: format!("{}, against all that can be seen", compared.note()),
         subject: Subject::Bounces,
         points: points.collect(),

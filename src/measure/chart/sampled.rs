@@ -1,22 +1,18 @@
 //! Errors of sampled pixels, and what they say about the whole image.
 
 use super::betting::Drawn;
-use super::right::{Colours, Right};
 use super::small::Missed;
-use std::io;
-use tabray_core::render::plan::Plan;
 use tabray_core::world::material::Rgb;
-
-/// The part of the pixels that may be worse than the error of the worst pixels.
-const WORST: f64 = 0.001;
+use tabray_tools::sampling::error::{PixelError, WORST};
+use tabray_tools::sampling::right::Right;
 
 /// The probability with which a promise may be wrong.
 const DOUBT: f64 = 0.01;
 
-/// Returns the allowed probability that one part of one of `bounds` bounds is wrong. There are two parts, the pixels
-/// that are not measured and the noise of the right colours, and two phases: comparing choices, and confirming one.
+/// Returns the allowed probability that one part of one of `bounds` bounds is wrong. There are two parts: the pixels
+/// that are not measured, and the noise of the right colours.
 pub(super) fn doubt_of_each(bounds: usize) -> f64 {
-    0.25 * DOUBT / bounds as f64
+    0.5 * DOUBT / bounds as f64
 }
 
 /// Returns the number of standard deviations that a normal distribution exceeds with a probability of at most
@@ -25,37 +21,15 @@ fn deviations(doubt: f64) -> f64 {
     (-2.0 * libm::log(doubt)).sqrt()
 }
 
-/// The error of a pixel.
-#[derive(Clone, Copy)]
-struct PixelError {
-    /// The mean square of the channels' errors, estimated by the two right colours. Its expectation is the true one,
-    /// since their errors are independent, or more where a channel is white. It may be below 0.
-    square: f64,
-    /// A bound on the mean square of the right colours' own errors, in expectation.
-    spread: f64,
-    /// The variance that the right colours' noise gives `square`.
-    noise: f64,
-    /// The largest channel's error.
-    worst: f64,
-}
+/// The maximum number of choices whose bounds are compared where all pixels are measured.
+const COMPARED: usize = 128;
 
-impl PixelError {
-    fn new(colour: Rgb, [one, other]: Right) -> Self {
-        let (off, apart) = (colour - 0.5 * (one + other), one - other);
-        let spread = 0.25 * apart * apart;
-        // Clamping to white darkens the mean, in all images alike.
-        let square = |channel: usize| {
-            let is_white = colour[channel].max(one[channel]).max(other[channel]) >= 1.0;
-            off[channel] * off[channel] - if is_white { 0.0 } else { spread[channel] }
-        };
-        let [of_colours, spread] = [off * off, spread].map(|squares| squares.element_sum() / 3.0);
-        Self {
-            square: (square(0) + square(1) + square(2)) / 3.0,
-            spread,
-            noise: 4.0 * (of_colours + spread) * spread,
-            worst: off.abs().max_element(),
-        }
-    }
+/// Bounds the error of an image of which all pixels are measured, first those that may show small things.
+pub(super) fn bound_of_all(errors: &[PixelError], missed: &Missed, worst: bool) -> f64 {
+    let (small, rest) = errors.split_at(missed.pixels.len());
+    let [small, rest] = [small, rest].map(|errors| Errors { choices: vec![errors.to_vec()] });
+    let image = Image { all: errors.len(), small: &small, missed };
+    rest.bounds(0, image, worst, doubt_of_each(COMPARED))[1]
 }
 
 /// The errors of pixels, for several choices.
@@ -85,14 +59,14 @@ impl Errors {
         self.choices[0].len()
     }
 
-    /// Returns the largest error of a choice in any channel.
-    pub fn worst(&self, choice: usize) -> f64 {
-        self.choices[choice].iter().map(|error| error.worst).fold(0.0, f64::max)
+    /// Returns the errors of a choice.
+    pub fn of(&self, choice: usize) -> &[PixelError] {
+        &self.choices[choice]
     }
 
     /// Returns the mean of the fourth powers of a choice's errors.
     pub fn fourth(&self, choice: usize) -> f64 {
-        self.choices[choice].iter().map(|error| error.square.powi(2)).sum::<f64>() / self.pixels() as f64
+        self.choices[choice].iter().map(|error| error.careful.powi(2)).sum::<f64>() / self.pixels() as f64
     }
 
     /// Adds pixels: for each choice their colours, and the right ones.
@@ -100,21 +74,6 @@ impl Errors {
         for (errors, colours) in self.choices.iter_mut().zip(choices) {
             errors.extend(colours.iter().zip(right).map(|(colour, right)| PixelError::new(*colour, *right)));
         }
-    }
-
-    /// Adds pixels to the errors of each plan, whose choices are numbers of samples.
-    pub fn add_each(
-        errors: &mut [Self],
-        colours: &mut Colours,
-        plans: &mut [Plan],
-        samples: &[u32],
-        right: &[Right],
-    ) -> io::Result<()> {
-        for (plan, errors) in plans.iter_mut().zip(errors) {
-            let choices = samples.iter().map(|samples| colours.of(plan, *samples));
-            errors.add(&choices.collect::<io::Result<Vec<_>>>()?, right);
-        }
-        Ok(())
     }
 
     /// Returns the error of a choice and an upper bound for the image: the root of the mean square, or with `worst`
@@ -127,14 +86,14 @@ impl Errors {
         let (errors, small) = (&self.choices[choice], &image.small.choices[choice]);
         let all = image.all as f64;
         let rest = image.all - image.missed.pixels.len();
-        let squares: Vec<_> = errors.iter().map(|error| error.square).collect();
+        let squares: Vec<_> = errors.iter().map(|error| error.careful).collect();
         let [mean, most] = if squares.is_empty() {
             [0.0; 2]
         } else {
             let drawn = Drawn { numbers: &squares, all: rest };
             [squares.iter().sum::<f64>() / squares.len() as f64, drawn.bound(doubt)]
         };
-        let of_small: f64 = small.iter().map(|error| error.square).sum();
+        let of_small: f64 = small.iter().map(|error| error.careful).sum();
         let noise = errors.iter().chain(small).map(|error| error.noise).sum::<f64>().sqrt();
         // Where all pixels are known, this alone accounts for the noise of the right colours.
         let known = if errors.len() >= rest { &errors[..] } else { &[] };

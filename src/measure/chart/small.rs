@@ -8,7 +8,6 @@
 
 use super::bright::{Bounds, Cell, unbounded};
 use super::progress::Progress;
-use super::right::{Right, SCRAMBLES};
 use glam::DVec2;
 use std::io;
 use std::ops::Range;
@@ -23,10 +22,17 @@ use tabray_core::world::display::Display;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{Sample, Sampler};
 use tabray_core::world::sensor::Sensor;
+use tabray_tools::sampling::places::Drawing;
+use tabray_tools::sampling::right::{Right, SCRAMBLES};
 
 /// The least and the greatest brightness, where 1 is white, up to which nothing counts as small. Something less
 /// bright must take a large part of a pixel, or of many pixels, to matter, and then samples see it.
 const BRIGHT: [f64; 2] = [4.0, 64.0];
+
+/// The part of the squares that are looked at first, one in this many, and the part of their pixels, one in this many,
+/// from which on small things may be everywhere.
+const TRIED: usize = 16;
+const TOO_MANY: usize = 4;
 
 /// The width in pixels of the squares that are looked at first.
 const SQUARE: usize = 8;
@@ -37,9 +43,6 @@ const CUT: usize = 500;
 /// The samples of each image that counts as right: of the rest of a pixel, and at first of its cells.
 const REST: u32 = 128;
 const FIRST: u32 = 64;
-
-/// The greatest number of samples for all pixels together.
-const MAX_SAMPLES: usize = 4_000_000;
 
 /// The part of the goal below which the bound on missed things should be.
 const WANTED: f64 = 0.15;
@@ -93,8 +96,9 @@ impl SmallThings {
     }
 
     /// Finds the pixels of a plan's image with things that together change the image by more than an error. `samples`
-    /// is the number of samples of each measured pixel.
-    pub fn find(plan: &Plan, threads: &Renderer, error: f64, samples: u32) -> Self {
+    /// is the number of samples of each measured pixel. Without bounds, finds none if that would be a large part of the
+    /// pixels: to know them would not help.
+    pub fn find(plan: &Plan, threads: &Renderer, (error, is_certain): (f64, bool), samples: u32) -> Self {
         let camera = &plan.camera;
         let [width, height] = camera.pixels;
         let bounds = Brightness::new(plan.model);
@@ -108,16 +112,23 @@ impl SmallThings {
             return found;
         }
         let bounds = Bounds { bounds, camera, bright, unbounded: unbounded(plan) };
-        let squares: Vec<_> = (0..height)
-            .step_by(SQUARE)
-            .flat_map(|y| (0..width).step_by(SQUARE).map(move |x| [x, y]))
-            .collect();
+        let sides = camera.pixels.map(|side| side.div_ceil(SQUARE));
+        let drawing = Drawing::new(sides);
+        let squares: Vec<_> =
+            (0..sides[0] * sides[1]).map(|index| drawing.at(index).map(|side| side * SQUARE)).collect();
         let part = |range: Range<usize>| {
             let mut pixels = Vec::new();
             squares[range].iter().for_each(|square| bounds.find(*square, SQUARE, &mut pixels));
             pixels
         };
-        let whole = threads.run(|| parallel::map_ranges(squares.len(), 2, &part));
+        let first = squares.len() / TRIED;
+        let mut whole = threads.run(|| parallel::map_ranges(first, 2, &part));
+        if !is_certain && TOO_MANY * whole.len() > first * SQUARE * SQUARE {
+            return found;
+        }
+        let rest = |range: Range<usize>| part(range.start + first..range.end + first);
+        whole.extend(threads.run(|| parallel::map_ranges(squares.len() - first, 2, &rest)));
+        whole.sort_by_key(|([x, y], _)| [*y, *x]);
         let is_cut = whole.len() <= CUT;
         let cells = |index: usize| if is_cut { bounds.cut(whole[index].1) } else { vec![whole[index].1] };
         let cells = threads.run(|| parallel::map(whole.len(), cells));
@@ -139,19 +150,21 @@ impl SmallThings {
         self.is_measured
     }
 
-    /// Takes samples until the missed light is a small part of an error, or too many are taken.
+    /// Takes samples until the missed light is a small part of an error, or more than a greatest number is to be taken.
     pub fn measure(
         &mut self,
-        plan: &Plan,
+        plan: &mut Plan,
         threads: &Renderer,
-        error: f64,
+        (error, max_samples): (f64, usize),
         progress: &mut dyn Progress,
     ) -> io::Result<()> {
+        // The colour of the only sample of a pixel may be cut to what is shown, and a mean of such colours is too dark.
+        plan.camera.samples = REST;
         let all = plan.camera.pixels[0] * plan.camera.pixels[1];
         let cost = |pixel: &SmallPixel, count: u32| 2 * pixel.cells.len() * count as usize;
         let mut taken: usize =
             self.pixels.iter().map(|pixel| 2 * REST as usize + cost(pixel, pixel.first())).sum();
-        if taken > MAX_SAMPLES {
+        if taken > max_samples {
             self.is_measured = false;
             return Ok(());
         }
@@ -179,7 +192,7 @@ impl SmallThings {
                 .collect();
             let more: usize = wanted.iter().map(|(index, count)| cost(&self.pixels[*index], count / 2)).sum();
             taken += more;
-            if taken > MAX_SAMPLES || progress.is_late() {
+            if taken > max_samples || progress.is_late() {
                 break;
             }
         }

@@ -1,9 +1,7 @@
 //! The times of renders of a scene, by accuracy and number of samples.
 
 use super::cost::{Counted, Estimated, Timing};
-use super::places::spread;
 use super::progress::Progress;
-use super::traced;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::io;
@@ -16,6 +14,8 @@ use tabray_core::scene::model::Model;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sampler;
 use tabray_tools::clock;
+use tabray_tools::sampling::places::spread;
+use tabray_tools::sampling::traced;
 
 /// The numbers of samples with which the times of accuracies are compared, and the number of groups of packets.
 const COMPARED: [u32; 2] = [1, 4];
@@ -26,7 +26,7 @@ const GROUPS: usize = 5;
 const GAIN: f64 = 0.8;
 
 /// The cost of the render of an image.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
     /// The number of rays of all kinds.
     pub rays: f64,

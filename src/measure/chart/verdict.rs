@@ -27,7 +27,7 @@ pub fn words(chart: &Chart) -> String {
             Subject::Bounces => bounces(panel),
             Subject::Whole => front(chart, panel).into_iter().chain(default_position(chart, panel)).collect(),
         };
-        for line in lines {
+        for line in lines.into_iter().chain(barred(chart, panel)) {
             let _ = writeln!(text, "  {line}");
         }
         text += "\n";
@@ -59,17 +59,21 @@ fn advice(chart: &Chart) -> Vec<String> {
         .is_doubtful()
         .then(|| "measure the times again on a machine with nothing else to do: see below".to_owned());
     let accuracy = of(Subject::Methods).and_then(|panel| accuracy(chart, panel));
+    let unchecked = chart.unchecked.iter().map(ToString::to_string);
     let samples = of(Subject::Samples).map(sampling);
-    accuracy.into_iter().chain(samples).chain(again).collect()
+    accuracy.into_iter().chain(unchecked).chain(samples).chain(again).collect()
 }
 
 /// Says which accuracy to choose: the default, unless it has wrong hits, or another one that may be advised is clearly
-/// faster and changes no pixel.
+/// faster and changes no pixel. `None` where hits cannot be proven, and methods may share their mistakes.
 fn accuracy(chart: &Chart, panel: &Panel) -> Option<String> {
     let default = panel.points.iter().find(|point| point.is_default)?;
     let name = &default.name;
     if chart.has_faults(name) {
         return Some(format!("take `--accuracy exact`: {name}, the scene's own, has hits that are wrong"));
+    }
+    if !chart.unchecked.is_empty() {
+        return None;
     }
     let is_same = |point: &&Point| is_advisable(chart, point) && matches!(point.changed, Some([0, _]));
     let fastest = panel.points.iter().filter(is_same).min_by(|a, b| a.times.least.total_cmp(&b.times.least));
@@ -242,6 +246,14 @@ fn front(chart: &Chart, panel: &Panel) -> Option<String> {
     (!each.is_empty()).then(|| format!("Pareto front: {}", each.join("; ")))
 }
 
+/// Names the choices that only hits in another panel keep from the front.
+fn barred(chart: &Chart, panel: &Panel) -> Option<String> {
+    let names: Vec<_> =
+        panel.points.iter().filter(|point| chart.is_barred(point)).map(|point| &*point.name).collect();
+    (!names.is_empty())
+        .then(|| format!("wrong in another panel, and so not on the front: {}", names.join("; ")))
+}
+
 /// Describes the position of the default in the time and the colours of images; `None` where the times are in doubt.
 /// Only a choice that may be advised, and is clearly faster or more exact, beats it.
 fn default_position(chart: &Chart, panel: &Panel) -> Option<String> {
@@ -300,6 +312,7 @@ fn percent(part: f64) -> String {
 mod tests {
     use super::*;
     use crate::chart::{Times, WrongHits};
+    use tabray_tools::unchecked::Unchecked;
 
     /// The numbers of a choice: its time in microseconds, its error, its wrong hits of 100, and its changed pixels of
     /// 100.
@@ -359,10 +372,20 @@ mod tests {
         assert!(text.contains("the default, exact, has no wrong hits: 9000 ns, 1e-12"), "{text}");
         assert!(text.contains("for an error of at most 1e-2: exact, 4000 ns"), "{text}");
         // It loses no hit of the plane, but is a choice for the whole scene.
+        assert!(text.contains("wrong in another panel, and so not on the front: classic"), "{text}");
         assert!(!text.contains("Pareto front: classic"), "{text}");
         let text = words(&chart(2.0));
         assert!(text.starts_with("What to do:\n  take `--accuracy draft`: "), "{text}");
         assert!(text.contains("the default, exact, 4.0 µs, is beaten by draft, 2.0 µs"), "{text}");
+    }
+
+    #[test]
+    fn hits_that_are_not_checked_are_not_praised() {
+        let unchecked = vec![Unchecked { of: "ring", hits: 9, differ: 2, most: 0.5 }];
+        let text = words(&Chart { unchecked, ..chart(2.0) });
+        let advice = "What to do:\n  not checked: `ring` has no equation; 2 of 9 hits differ from those of rays that start nearer or \
+                      come back, by up to 0.5 world units\n\n";
+        assert!(text.starts_with(advice), "{text}");
     }
 
     #[test]

@@ -16,12 +16,14 @@ use tabray_cli::process::failure::{self, Failure, print};
 use tabray_cli::process::interrupt::{self, InterruptAction};
 use tabray_cli::process::{messages, progress};
 use tabray_cli::{Command, Group, Run};
+use tabray_core::render::plan::Plan;
 use tabray_core::scene::choice::Choice;
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::reader::ReadOptions;
 use tabray_lang::registry::Registry;
+use tabray_tools::unchecked;
 
 /// Chart the cost and the error of each choice in a scene
 ///
@@ -67,6 +69,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         _ => "stdin".to_owned(),
     };
     let files = files(&args.output, &name, |path| output::refuse_source(path, &args.scene.path, &model))?;
+    let unchecked = unchecked::of(&Plan::new(&model));
     drop(model);
     interrupt::catch(InterruptAction::SetFlagThenExit(NOTHING))?;
     let (kept, units) = (work.panels(), work.units());
@@ -88,7 +91,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Err(RecvTimeoutError::Timeout) => {
                 progress::clear();
                 let panels = kept.lock().unwrap_or_else(PoisonError::into_inner).clone();
-                match end(Chart { panels, ..Chart::empty(&name) }) {
+                match end(Chart { panels, unchecked, ..Chart::empty(&name) }) {
                     Ok(()) => failure::exit(),
                     Err(failure) => failure::end(&failure),
                 }

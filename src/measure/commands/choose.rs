@@ -1,7 +1,7 @@
 //! `tabray choose`: chooses accuracy and samples for a maximum error or time.
 
 use super::chart::all_accuracies;
-use crate::chart::{self, Cost, Estimate, Estimates, Goal};
+use crate::chart::{self, Cost, Estimate, Estimates, Goal, Small};
 use crate::measuring::{Work, wait};
 use clap::ArgGroup;
 use std::cmp::Ordering;
@@ -25,14 +25,15 @@ use tabray_core::text::{self, short};
 use tabray_core::world::accuracy::Accuracy;
 use tabray_lang::registry::Registry;
 use tabray_tools::clock;
+use tabray_tools::unchecked::{self, Unchecked};
 
 /// Choose accuracy and samples for a maximum error or time
 ///
-/// Measures the choices on a part of the image, shows them with bounds on their errors, and prints the command line to
-/// use. The bounds hold with a confidence of 99 %. The comparison of the choices takes about 1 million rays (2 million
-/// with `--worst`), and the search for lamps, wires and glints that samples may miss up to 4 million. The likely choice
-/// is then measured on as many pixels as its bound needs. Gives up after 30 seconds or after --time-limit, and may take
-/// a tenth longer.
+/// Measures the choices on pixels from all parts of the image, against samples that no choice takes, and prints the
+/// command line to use. The error of the whole image is at most what is printed, with a confidence of 95 %; with
+/// --certain, by a bound that holds whatever the other pixels are, with one of 99 %. The comparison of the choices takes
+/// 2 to 8 million rays for each of up to four ranges of samples, and the search for lamps, wires and glints that samples
+/// may miss up to 4 million. Gives up after 30 seconds or after --time-limit, and may take a tenth longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]
@@ -49,6 +50,9 @@ pub struct Args {
     /// count
     #[arg(long)]
     worst: bool,
+    /// Promise only what bounds make certain: of all pixels, and of all that may be smaller than a sample
+    #[arg(long)]
+    certain: bool,
     /// The time that choosing may take, such as 30s or 2m, instead of 30 seconds
     #[arg(long, value_name = "TIME", value_parser = stop::time)]
     time_limit: Option<Duration>,
@@ -57,6 +61,7 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   tabray choose ball.ray --max-error 2       # levels of 255
+  tabray choose ball.ray --max-error 2 --certain
   tabray choose ball.ray --max-time 2 --worst";
 
 /// The time that choosing may take if no time limit is given.
@@ -85,13 +90,15 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let units = work.units();
     let source = args.scene.read()?;
     let model = input::print_warnings(source.load(registry, None))?.model;
-    drop(Plan::for_picture(&model));
+    let plan = Plan::for_picture(&model);
     // A render begins with the same work as this program.
     let beginning = clock::of_process().as_secs_f64();
+    let unchecked = unchecked::of(&plan);
+    drop(plan);
     drop(model);
     let load = all_accuracies(registry, &source)?;
     interrupt::catch(InterruptAction::Exit("nothing has been chosen"))?;
-    let worst = args.worst;
+    let (worst, is_certain) = (args.worst, args.certain);
     // Either the error or the time is given.
     let time = args.max_time.unwrap_or(f64::INFINITY);
     let (goal, asked) = match args.max_error {
@@ -106,7 +113,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         let (sender, measured) = mpsc::channel();
         let load = &load;
         scope.spawn(move || {
-            let estimates = chart::estimates(load, goal, beginning, &mut work);
+            let estimates = chart::estimates(load, (goal, is_certain), beginning, &mut work);
             work.end();
             let _ = sender.send(estimates);
         });
@@ -122,7 +129,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        let choice = Selection { estimates: &estimates, cores, goal, asked };
+        let choice = Selection { estimates: &estimates, cores, goal, asked, is_certain, unchecked };
         print(&choice.words(choice.chosen()?, &args.scene.path, &args.scene.set))
     })
 }
@@ -134,6 +141,9 @@ struct Selection<'e> {
     goal: Goal,
     /// The maximum error or time in words.
     asked: String,
+    is_certain: bool,
+    /// What no number of samples makes right.
+    unchecked: Vec<Unchecked>,
 }
 
 impl<'e> Selection<'e> {
@@ -164,28 +174,40 @@ impl<'e> Selection<'e> {
             }
         }
         best.ok_or_else(|| {
-            let least = |of: &dyn Fn(&Estimate) -> f64| {
-                self.estimates.all.iter().map(of).fold(f64::INFINITY, f64::min)
+            let nearest = |of: &dyn Fn(&Estimate) -> f64| {
+                self.estimates.all.iter().min_by(|one, other| of(one).total_cmp(&of(other)))
             };
             let asked = &self.asked;
+            let short =
+                if self.estimates.is_short { "; there was no time for more: `--time-limit` gives it" } else { "" };
             Failure::Failed(match self.goal {
-                Goal::Error { most, .. } if self.estimates.all.iter().any(|one| self.is_hidden(one, most)) => {
-                    let pixels = self.estimates.small.pixels;
-                    let missed = levels(self.estimates.small.missed);
+                Goal::Error { most, .. }
+                    if self.is_certain && self.estimates.all.iter().any(|one| self.is_hidden(one, most)) =>
+                {
+                    let Small { pixels, missed } = self.estimates.small;
                     format!(
-                        "no promise: {pixels} pixels may show things smaller than a sample, and missing these may add {missed}"
+                        "no promise: {pixels} pixels may show things smaller than a sample, and missing these may add {}",
+                        levels(missed)
+                    )
+                }
+                Goal::Error { .. } | Goal::None if self.is_certain => {
+                    let least = nearest(&|one| one.bound).map_or(f64::INFINITY, |one| one.bound);
+                    let least = if least.is_finite() { levels(least) } else { "unknown".to_owned() };
+                    format!(
+                        "no choice is certain to have an error of at most {asked}; the least bound is {least}{short}"
                     )
                 }
                 Goal::Error { .. } | Goal::None => {
-                    let least = least(&|one| one.bound);
-                    let least = if least.is_finite() { levels(least) } else { "unknown".to_owned() };
-                    format!(
-                        "no choice is certain to have an error of at most {asked}; the least bound is {least}"
-                    )
+                    let nearest = nearest(&|one| one.bound).map_or(String::new(), |one| {
+                        let [error, most] = [one.error, one.bound].map(levels);
+                        format!("; the nearest is `--samples {}`, with {error}, or at most {most}", one.numbers())
+                    });
+                    format!("no choice was measured to have an error of at most {asked}{nearest}{short}")
                 }
                 Goal::Time { .. } => {
-                    let least = seconds(least(&|one| one.cost.time.range[1]));
-                    format!("no choice is sure to take at most {asked}; the fastest may take {least}")
+                    let least = nearest(&|one| one.cost.time.range[1]);
+                    let least = least.map_or(f64::INFINITY, |one| one.cost.time.range[1]);
+                    format!("no choice is sure to take at most {asked}; the fastest may take {}", seconds(least))
                 }
             })
         })
@@ -210,22 +232,29 @@ impl<'e> Selection<'e> {
             }
         };
         let Estimates { pixels: all, small, is_short, .. } = *self.estimates;
-        let measured = chosen.pixels;
-        let sure = ", with a confidence of 99 %";
+        let sure = if self.is_certain {
+            "by a bound with a confidence of 99 %"
+        } else {
+            "with a confidence of 95 %"
+        };
         let small = match small.pixels {
             0 => String::new(),
-            pixels => format!(
-                " {pixels} pixels may show things smaller than a sample; they were measured with more samples, and bounds \
-                 include what these may have missed."
+            pixels if self.is_certain => format!(
+                " {pixels} pixels may show things smaller than a sample; bounds include what these may have missed."
             ),
+            pixels => {
+                format!(" {pixels} pixels may show things smaller than a sample, which none may have met.")
+            }
         };
         let short = if is_short { "; there was no time for more" } else { "" };
+        let unchecked: String = self.unchecked.iter().map(|one| format!("\n{one}\n")).collect();
         format!(
-            "{}\nThe marked choice is {why}{sure}. Errors are in levels of 255. Its own was measured on {measured} of {all} \
-             pixels{short}; that of the whole image is at most what the table says.{small} Choices of one \
-             accuracy are compared by their rays per pixel, those of several by their times.\n\n{}\n\n\
+            "{}\nThe marked choice is {why}. Errors are in levels of 255, and were measured on {} of {all} pixels, drawn from \
+             all parts of the image{short}; that of the whole image is at most what the table says, {sure}.{small} Choices \
+             of one accuracy are compared by their rays per pixel, those of several by their times.\n\n{}\n{unchecked}\n\
              {} render {}{} {how} --samples {}\n",
             self.table(chosen),
+            chosen.pixels,
             self.times(chosen),
             program::name(),
             text::shown(scene),

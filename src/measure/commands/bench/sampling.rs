@@ -1,7 +1,7 @@
 //! `bench --sampling`: the cost and the error of numbers of samples per pixel.
 
 use crate::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, WrongHits};
-use crate::sampling::{self, LEVELS, Measured, Samples};
+use crate::sampling::{self, LEVELS, Measured};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -11,6 +11,7 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{self, short};
 use tabray_core::world::sample::Sampler;
 use tabray_core::world::sensor::Adaptive;
+use tabray_tools::sampling::Samples;
 use tabray_tools::threads::renderer_with;
 
 /// The number of samples per pixel of the images that count as true.
@@ -66,6 +67,7 @@ pub fn run(
         scene: "samples per pixel".to_owned(),
         machine: Machine::here(),
         panels: Vec::new(),
+        unchecked: Vec::new(),
         is_whole: true,
     };
     print(question.head())?;

@@ -23,20 +23,21 @@ pub fn place([width, height]: [usize; 2], index: usize) -> [usize; 2] {
 }
 
 /// The pixels of an image in a pseudorandom order, the same each time.
-struct Drawing {
+pub struct Drawing {
     size: [usize; 2],
     /// Half the number of bits of the least power of 4 that is at least the number of pixels.
     half: u32,
 }
 
 impl Drawing {
-    fn new(size: [usize; 2]) -> Self {
+    /// Orders the pixels of an image of this size.
+    pub fn new(size: [usize; 2]) -> Self {
         let bits = usize::BITS - (size[0] * size[1]).saturating_sub(1).leading_zeros();
         Self { size, half: bits.div_ceil(2).max(1) }
     }
 
     /// Returns the pixel of an index below the number of pixels.
-    fn at(&self, index: usize) -> [usize; 2] {
+    pub fn at(&self, index: usize) -> [usize; 2] {
         let mut index = self.mixed(index);
         // A place beyond the image is mixed again until it is a pixel. The result is still a permutation of the pixels.
         while index >= self.size[0] * self.size[1] {
@@ -50,11 +51,7 @@ impl Drawing {
         let mask = (1 << self.half) - 1;
         let (mut left, mut right) = (index as u64 >> self.half, index as u64 & mask);
         for round in 1..=ROUNDS {
-            // The finalizer of SplitMix64.
-            let mut hash = (right + (round << 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            hash = (hash ^ hash >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            hash = (hash ^ hash >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-            (left, right) = (right, left ^ (hash ^ hash >> 31) & mask);
+            (left, right) = (right, left ^ hash(right + (round << 32)) & mask);
         }
         (left << self.half | right) as usize
     }
@@ -62,6 +59,19 @@ impl Drawing {
 
 /// The rounds of a [`Drawing`].
 const ROUNDS: u64 = 6;
+
+/// Returns a number by which pixels are put in a pseudorandom order.
+pub(super) fn mixed([x, y]: [usize; 2]) -> u64 {
+    hash((x as u64) << 32 | y as u64)
+}
+
+/// Mixes the bits of a number: the finalizer of SplitMix64.
+fn hash(number: u64) -> u64 {
+    let mut hash = number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    hash = (hash ^ hash >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    hash = (hash ^ hash >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    hash ^ hash >> 31
+}
 
 /// The pixels of an image in the order in which they are drawn at random, without those that may show small things.
 pub struct Draw {
@@ -72,6 +82,7 @@ pub struct Draw {
 }
 
 impl Draw {
+    /// Draws from the pixels of an image of this size, without some.
     pub fn new([width, height]: [usize; 2], without: Pixels) -> Self {
         let without = without.into_iter().collect();
         Self { drawing: Drawing::new([width, height]), all: width * height, width, without }

@@ -1,6 +1,7 @@
 //! Some pixels of an image, traced in groups as a render traces them: their colours and their costs.
 
 use super::places::Pixels;
+use crate::clock;
 use std::hint::black_box;
 use std::mem::replace;
 use std::sync::{Mutex, PoisonError};
@@ -13,16 +14,16 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
-use tabray_tools::clock;
 
 /// The time of a group, in seconds, below which the first use of scratch space matters.
 const SHORT: f64 = 1e-3;
 
 /// A group of pixels that were traced together.
 #[derive(Clone, Default)]
-pub(super) struct Group {
+pub struct Group {
     /// The colours, before they are clamped to what an image can show.
     pub colours: Vec<Rgb>,
+    /// The rays.
     pub rays: Rays,
     /// The CPU time, in seconds.
     pub seconds: f64,
@@ -30,8 +31,10 @@ pub(super) struct Group {
 
 /// Rays that are counted.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Rays {
+pub struct Rays {
+    /// Rays of all kinds.
     pub all: u64,
+    /// Rays from the viewer.
     pub primary: u64,
     /// The samples of pixels that take different numbers of them, without probes.
     pub samples: u64,
@@ -63,11 +66,7 @@ struct Warmed {
 }
 
 /// Traces groups of pixels on all threads of a renderer, and returns them in their order.
-pub(super) fn groups(
-    threads: &Renderer,
-    plan: &Plan,
-    pixels: &[impl AsRef<[[usize; 2]]> + Sync],
-) -> Vec<Group> {
+pub fn groups(threads: &Renderer, plan: &Plan, pixels: &[impl AsRef<[[usize; 2]]> + Sync]) -> Vec<Group> {
     let traced = Mutex::new(vec![Group::default(); pixels.len()]);
     let one = |state: &mut Warmed, index: usize| {
         let mut trace = || group(plan, pixels[index].as_ref(), &mut state.scratch);
@@ -92,24 +91,24 @@ fn group(plan: &Plan, pixels: &[[usize; 2]], scratch: &mut Scratch) -> Group {
 }
 
 /// Traces pixels that may lie far apart, and returns the colour of each, before it is clamped, and the number of
-/// samples where pixels differ in that.
-pub(super) fn apart(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, u64) {
+/// samples of each where pixels differ in that.
+pub fn apart(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb>, Vec<u64>) {
     // Pixels that take as many samples as they need share probes only with their neighbours.
     let is_fixed = plan.camera.adaptive.is_none();
     let at_once = if is_fixed { (4 * PACKET_SIZE / plan.camera.samples as usize).max(1) } else { 1 };
     let groups = groups(threads, plan, &pixels.chunks(at_once).collect::<Vec<_>>());
-    let samples = groups.iter().map(|group| group.rays.samples).sum();
+    let samples = groups.iter().map(|group| group.rays.samples).collect();
     (groups.into_iter().flat_map(|group| group.colours).collect(), samples)
 }
 
 /// Returns the colours of pixels that may lie far apart, as they are shown.
-pub(super) fn shown(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
+pub fn shown(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
     let display = plan.camera.display();
     apart(threads, plan, pixels).0.into_iter().map(|colour| display.shown(colour)).collect()
 }
 
 /// Traces tiles on this thread, to be timed.
-pub(super) fn tiles(plan: &Plan, tiles: &[Pixels]) {
+pub fn tiles(plan: &Plan, tiles: &[Pixels]) {
     let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
     for tile in tiles {
         black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));
