@@ -85,7 +85,6 @@ inventory::submit! {
 }
 
 fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
-    args.samples.tell_max_error();
     // The images of a folder's scenes go to a folder, however many there are.
     let is_folder = folders::open(&mut args.scenes)?;
     let output = args.output.as_deref();

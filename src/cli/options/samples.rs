@@ -1,12 +1,18 @@
 //! `--samples`, `--max-error` and `--sampler`: how many samples the pixels of an image take, and where.
 
-use super::max_error::MaxError;
+use super::max_error::{self, LEVELS, MaxError};
 use crate::options::named::by_name;
+use crate::options::threads;
 use crate::process::failure::Failure;
 use crate::process::messages;
+use tabray_core::render::plan::Plan;
+use tabray_core::scene::model::Model;
+use tabray_core::simd::cpu::Cpu;
+use tabray_core::text::short;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::sample::Sampler;
 use tabray_core::world::sensor::{Adaptive, Sensor};
+use tabray_tools::sampling::raise::{Raised, raise};
 
 /// The numbers of samples per pixel that `--max-error` chooses from, where `--samples` does not say.
 const BY_ERROR: [u32; 2] = [4, 4096];
@@ -23,7 +29,8 @@ pub struct Args {
     samples: Option<Samples>,
     /// Take as many samples in each pixel as it needs for this error, such as `2` (levels of 255) or `0.5%` (of white).
     /// The error is estimated, not proven: in the scenes of docs/errors.md, 98 to 100 % of the pixels kept the limit.
-    /// Takes 4 to 4096 samples unless --samples gives other limits
+    /// Takes 4 to 4096 samples unless --samples gives other limits; at first more than 4 where the error of the image,
+    /// measured on some pixels, would be larger
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
     max_error: Option<MaxError>,
     /// Prove the error of --max-error where possible. A pixel takes no samples if narrow bounds enclose its colour for
@@ -46,11 +53,30 @@ enum Samples {
 }
 
 impl Args {
-    /// Says which error `--max-error` was taken to be.
-    pub fn tell_max_error(&self) {
-        if let Some(error) = self.max_error {
-            messages::note(&format!("each pixel takes samples for an estimated error of at most {error}"));
+    /// Measures the error of a model's image, and raises the least number of samples where pixels that take few do not meet
+    /// what others show. Says what was measured. Limits that are given stay, and so do pixels that are proven.
+    pub fn raise(&self, model: &mut Model, threads: threads::Args, cpu: Cpu) -> Result<(), Failure> {
+        let (Some(error), Some(adaptive)) = (self.max_error, model.camera.value.adaptive) else {
+            return Ok(());
+        };
+        if self.certain || self.samples.is_some() {
+            return Ok(());
         }
+        let (mut plan, threads) = (Plan::new(model), threads.renderer()?.on(cpu));
+        let Raised { least, error: measured, pixels } =
+            raise(&mut plan, &threads, adaptive, error.of_white());
+        let words = format!(
+            "an error of {}, or at most {} with a confidence of 95 %, measured on {pixels} pixels with at least {least} samples",
+            max_error::levels(measured.mean),
+            short(LEVELS * measured.most)
+        );
+        if measured.most <= error.of_white() {
+            messages::note(&format!("each pixel takes samples for at most {error}: {words}"));
+        } else {
+            messages::warning(&format!("no promise of at most {error}: {words}"), None);
+        }
+        model.camera.value.samples = least;
+        Ok(())
     }
 
     /// Gives the camera the requested samples.

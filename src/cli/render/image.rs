@@ -55,6 +55,7 @@ pub(super) fn render(
     args.samples.apply(camera)?;
     camera.exposure += args.exposure;
     let region = args.size.apply(camera)?;
+    args.samples.raise(&mut model, args.threads, cpu)?;
     let made = provenance::texts(&source, &args.set, (&model.camera.value, args.exposure), &region);
     let image = ImageRender {
         registry,

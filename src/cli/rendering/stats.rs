@@ -10,10 +10,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tabray_core::render::flaws::{BudgetCuts, Flaws};
 use tabray_core::render::observer::RayKind;
+use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::{Proofs, RayStats, TestCounts};
 use tabray_core::scene::model::Model;
 use tabray_core::text::{json, short, visible_lines};
 use tabray_core::world::certify::Doubt;
+use tabray_tools::unchecked;
 
 #[derive(clap::Args)]
 #[group(id = "statistics")]
@@ -140,6 +142,13 @@ impl Stats {
         for Undecided { object, pixels, reason } in undecided {
             let _ = writeln!(out, "{object:<12} {pixels:>14}  {reason}");
         }
+        let unchecked = unchecked::of(&Plan::new(model));
+        if !unchecked.is_empty() {
+            out += "\n";
+        }
+        for one in unchecked {
+            let _ = writeln!(out, "{one}");
+        }
         let _ = writeln!(
             out,
             "\n{:<12} {:>14} {:>14} {:>14} {:>14}",
@@ -184,6 +193,7 @@ impl Stats {
             samples: mean_samples(&tally).map(|mean| Samples { mean, pixels: tally.sampled().collect() }),
             seconds: self.seconds(),
             tests: tally.tests(model),
+            unchecked: unchecked::of(&Plan::new(model)).iter().map(ToString::to_string).collect(),
             undecided: undecided(&tally, model),
         }
     }
@@ -219,6 +229,9 @@ struct Counts<'m> {
     seconds: Seconds,
     /// The outcomes of the tests, by entity type.
     tests: BTreeMap<&'static str, TestCounts>,
+    /// What is not checked of the hits, one sentence for each entity type without an equation; left out where there is none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unchecked: Vec<String>,
     /// The pixels whose first hit could not be decided, by object and reason; left out where there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     undecided: Vec<Undecided<'m>>,
