@@ -156,16 +156,22 @@ impl Iterator for RayReader<'_> {
             return None;
         }
         let unit = if matches!(self.rows, Rows::Npy(_)) { "row" } else { "line" };
-        let (message, is_last) = match self.numbers()? {
-            Ok((numbers, t_max)) => match of_numbers(numbers, t_max) {
-                Ok(row) => return Some(Ok(row)),
-                Err(message) => (message, false),
-            },
-            Err(fault) => fault,
-        };
-        self.is_over = is_last;
-        Some(Err(BadRay { number: self.number, unit, message, is_last }))
+        let read = self.numbers()?;
+        let row = read.and_then(|(numbers, t_max)| of_numbers(numbers, t_max).map_err(|why| (why, false)));
+        Some(numbered(row, (unit, self.number), &mut self.is_over))
     }
+}
+
+/// Adds to a fault the line or the row that it is in, and ends the reader after the last one.
+pub(super) fn numbered<T>(
+    row: Result<T, (String, bool)>,
+    (unit, number): (&'static str, u64),
+    is_over: &mut bool,
+) -> Result<T, BadRay> {
+    row.map_err(|(message, is_last)| {
+        *is_over = is_last;
+        BadRay { number, unit, message, is_last }
+    })
 }
 
 /// Returns the format that the first bytes of rays show.

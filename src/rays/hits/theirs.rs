@@ -1,6 +1,8 @@
 //! Reads the answers of another tracer, each with its ray.
 
-use super::rays::{BadRay, Input, RayRow, columns, fields, next_line, of_numbers, of_record, short};
+use super::rays::{
+    BadRay, Input, RayRow, columns, fields, next_line, numbered, of_numbers, of_record, short,
+};
 use serde::Deserialize;
 use std::io::BufRead;
 use tabray_core::text::reason;
@@ -149,14 +151,8 @@ impl Iterator for TheirReader<'_> {
             return None;
         }
         let is_csv = self.columns.is_some();
-        let (message, is_last) = match next_line(&mut self.input, &mut self.number, is_csv)? {
-            Ok(line) => match self.answer(&line) {
-                Ok(answer) => return Some(Ok(answer)),
-                Err(message) => (message, false),
-            },
-            Err(fault) => fault,
-        };
-        self.is_over = is_last;
-        Some(Err(BadRay { number: self.number, unit: "line", message, is_last }))
+        let line = next_line(&mut self.input, &mut self.number, is_csv)?;
+        let answer = line.and_then(|line| self.answer(&line).map_err(|why| (why, false)));
+        Some(numbered(answer, ("line", self.number), &mut self.is_over))
     }
 }
