@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::f64::consts::TAU;
 use std::path::Path;
-use tabray::exact::interval::Interval;
+use tabray::exact::interval::{Float, Interval};
 use tabray::geometry::{MISS, Ray, RayRange, Sight};
 use tabray::scene::{self, Model};
 use tabray::world::certify::{Enclosure, Precision};
@@ -175,6 +175,26 @@ fn hits_of_strips_and_bottles_are_proven() {
         }
         assert!(proven > 146, "{formulas:?}: {proven}");
     }
+}
+
+/// Rays in the plane of a seam, where u is 0 or v is 0: the torus is hit at its outer or its inner equator.
+#[test]
+fn hits_where_a_surface_closes_are_proven() {
+    let model = parametric(TORUS, [0.0, TAU]);
+    let shape = &model.objects[0].shape;
+    let mut dice = Dice(Pcg64::new(5, 3));
+    let mut hits = 0;
+    for _ in 0..200 {
+        let (from, to) = (dice.range(-0.3, 0.3), dice.range(-1.3, 1.3));
+        let (origin, dir) = (DVec3::new(5.0, 0.0, from), DVec3::new(-5.0, 0.0, to - from).normalize());
+        let sight = Sight::along(&Ray { origin, dir });
+        let [half, square] = [origin.dot(dir), origin.length_squared() - 1.4 * 1.4];
+        let truth = -half - (half * half - square).sqrt();
+        let Enclosure::Hits(at) = shape.certify(&sight, Precision::Octuple) else { continue };
+        assert!((at.middle().to_f64() - truth).abs() < 1e-12, "{at:?}, not {truth}");
+        hits += 1;
+    }
+    assert!(hits >= 199, "{hits} of 200");
 }
 
 #[test]

@@ -270,16 +270,17 @@ impl Float for f256 {
     }
 
     fn sines([one, other]: [Self; 2]) -> ([Self; 2], [Self; 2]) {
+        let sin = |of: Self| if is_small(of) { of } else { of.sin() };
         // The crate's combined function takes longer than two separate ones.
-        let (sin, cos) = (one.sin(), one.cos());
+        let (sine, cosine) = (sin(one), one.cos());
         if one == other {
-            return ([sin; 2], [cos; 2]);
+            return ([sine; 2], [cosine; 2]);
         }
-        ([sin, other.sin()], [cos, other.cos()])
+        ([sine, sin(other)], [cosine, other.cos()])
     }
 
     fn tan(self) -> Self {
-        f256::tan(&self)
+        if is_small(self) { self } else { f256::tan(&self) }
     }
 
     fn exp(self) -> Self {
@@ -302,6 +303,7 @@ impl Float for f256 {
         let angle = match is_diagonal {
             true if x.is_sign_negative() => Self::from(0.75) * Self::PI,
             true => ::f256::consts::FRAC_PI_4,
+            false if x > Self::ZERO && is_small(y / x) => y / x,
             false => f256::atan2(&y, &x),
         };
         angle.copysign(self)
@@ -324,6 +326,15 @@ impl Float for f256 {
     }
 }
 
+/// Angles up to this are their own sines and tangents, to within an ulp.
+const SMALL: f64 = 1.0 / (1_u128 << 119) as f64;
+
+/// Tells whether an angle is its own sine and tangent. The crate computes them with fixed-point numbers, which know no
+/// digits of an angle below 2^-492.
+fn is_small(angle: f256) -> bool {
+    angle.abs() <= f256::from(SMALL)
+}
+
 /// Returns 1 or -1, with the sign of a number.
 fn sign(of: f256) -> f64 {
     if of.is_sign_negative() { -1.0 } else { 1.0 }
@@ -332,6 +343,29 @@ fn sign(of: f256) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn small_angles_keep_their_digits() {
+        let (one, few) = (f256::ONE, f256::from(8.0) * <f256 as Float>::EPSILON);
+        let (mut power, three, six) = (f256::from(0.5), f256::from(3.0), f256::from(6.0));
+        for _ in 0..16 {
+            power = power * power;
+            // The next terms of the series are below an ulp up to there.
+            if power > f256::from(1e-18) {
+                continue;
+            }
+            let angle = f256::from(1.1) * power;
+            let square = angle * angle;
+            for (of, series) in [
+                (f256::sines([angle; 2]).0[0], one - square / six),
+                (Float::tan(angle), one + square / three),
+                (Float::atan2(angle, one), one - square / three),
+                (Float::atan2(-angle * power, power), square / three - one),
+            ] {
+                assert!(Float::abs(of / angle - series) <= few, "{angle:?}: {of:?}");
+            }
+        }
+    }
 
     #[test]
     fn angles_of_237_bits_are_those_of_53_in_every_direction() {

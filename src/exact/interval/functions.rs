@@ -137,6 +137,10 @@ impl<F: Float> Scalar for Interval<F> {
     }
 
     fn sin_cos(self) -> (Self, Self) {
+        // Not widened: the seams of surfaces of u and v are often in a plane that rays lie in, too.
+        if self.is_zero() {
+            return (self, Self::constant(1.0));
+        }
         let half_turn = F::PI;
         if !self.is_narrower(half_turn + half_turn) {
             let any = Self { low: F::of(-1.0), high: F::of(1.0) };

@@ -170,14 +170,18 @@ where
     fn add(&self, found: &mut Found<F>, leaf: usize, place: Rectangle<F>) {
         let ends = self.shape.ends().map(Interval::<F>::from_f64);
         let is_in = |axis: usize| ends[axis].low <= place[axis].low && place[axis].high <= ends[axis].high;
-        let t = self.t(&self.near(&place).at);
+        let mut t = self.t(&self.near(&place).at);
         if self.is_off(&place) || t.high <= F::of(0.0) || (self.is_left_out)(t, &place, true) {
             return;
         }
         if t.low <= F::of(0.0) {
             return found.doubt(F::of(0.0));
         }
-        let hit = Hit { t, place, leaf, is_edge: !(is_in(0) && is_in(1)) };
+        let mut is_edge = !(is_in(0) && is_in(1));
+        if is_edge && let Some(on_end) = self.hit_on_an_end(&place, &ends) {
+            (t, is_edge) = (t.hull(on_end), false);
+        }
+        let hit = Hit { t, place, leaf, is_edge };
         found.hit = Some(match found.hit {
             Some(known) if known.t.low <= t.high && t.low <= known.t.high => {
                 if !meet(&known.place, &place) {
@@ -190,6 +194,35 @@ where
             Some(known) if known.t.low <= t.low => known,
             _ => hit,
         });
+    }
+
+    /// Encloses the t of a hit at an end of u or of v near a place, if one certainly exists: in one of the two planes
+    /// through the line lies all of the surface's edge there, and the edge crosses the other plane.
+    fn hit_on_an_end(&self, place: &Rectangle<F>, ends: &Rectangle<F>) -> Option<Interval<F>> {
+        let zero = F::of(0.0);
+        (0..2).find_map(|axis| {
+            let (own, across) = (place[axis], place[1 - axis]);
+            let margin = F::of(16.0) * across.width();
+            let across = across + Interval { low: -margin, high: margin };
+            let is_in = ends[1 - axis].low <= across.low && across.high <= ends[1 - axis].high;
+            let end = [ends[axis].low, ends[axis].high]
+                .into_iter()
+                .find(|end| is_in && own.low <= *end && *end <= own.high)?;
+            let edge = |across: Interval<F>| {
+                let mut edge = [Interval::point(end); 2];
+                edge[1 - axis] = across;
+                edge
+            };
+            let off = |across| self.off(&self.shape.patches.points(&edge(across)));
+            let (all, [low, high]) =
+                (off(across), [across.low, across.high].map(|at| off(Interval::point(at))));
+            let crosses = |plane: usize| {
+                low[plane].high < zero && high[plane].low > zero
+                    || high[plane].high < zero && low[plane].low > zero
+            };
+            let is_hit = (0..2).any(|plane| all[plane].is_zero() && crosses(1 - plane));
+            is_hit.then(|| self.t(&self.near(&edge(across)).at))
+        })
     }
 
     /// Tells whether a place lies beyond the ends of u and v.
