@@ -98,7 +98,8 @@ fn roots<T: Number>(
         if sides.count > 0 && is_nowhere_zero(along, known, &piece) {
             continue;
         }
-        if is_narrow {
+        // Where the function is 0 all along a piece, so it is along shorter ones.
+        if is_narrow || is_whole && jet.value.sign() == Some(Ordering::Equal) {
             let is_full = found.open.len() == MAX_OPEN;
             match found.open.last_mut() {
                 Some([_, end]) if !low.sub(end).sign().is_some_and(Ordering::is_gt) => *end = high,
@@ -142,8 +143,10 @@ fn is_not_zero<T: Number>(of: &T) -> bool {
 fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T {
     /// How often a piece is cut where the method does not halve it, as where slopes differ at an edge of the shape.
     const CUTS: usize = 64;
+    /// The number of steps after which a root is known well enough. Near 0, digits have no end.
+    const STEPS: usize = 400;
     let mut cuts = 0;
-    loop {
+    for _ in 0..STEPS {
         let at = |of: Jet<T>| {
             let there = along.at(&of, known, &mut Sides::default());
             there.map_or(Jet { value: T::any(), slope: T::any() }, |there| there.jet)
@@ -169,6 +172,7 @@ fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T 
         };
         cuts += 1;
     }
+    piece
 }
 
 /// A ray as `s = start + 2^power * place`: places are relative to one of its points near a shape, in steps of about a
