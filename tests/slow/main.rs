@@ -21,6 +21,7 @@ mod fuzz;
 mod gallery;
 mod grammar;
 mod habits;
+mod measured;
 mod mesh_files;
 mod mesh_table;
 mod performance;
