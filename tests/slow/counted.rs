@@ -17,7 +17,7 @@ fn a_ray_at_a_vertex_costs_five_times_any_other_at_most() {
     let path = |name: &str| folder.path().join(name).to_str().expect("a path that is text").to_owned();
     // Flat blocks between rough ones, with heights of few digits: rays along an axis run in the planes of many faces.
     let height = |x: usize, y: usize| {
-        if (x / 16 + y / 16) % 2 == 0 { 0.0 } else { ((7 * x + 13 * y) % 5) as f64 / 8.0 }
+        if (x / 16 + y / 16).is_multiple_of(2) { 0.0 } else { ((7 * x + 13 * y) % 5) as f64 / 8.0 }
     };
     let vertex = |x: usize, y: usize| DVec3::new(x as f64, y as f64, height(x, y));
     let mut text = String::new();

@@ -97,12 +97,12 @@ fn whoever_looks_on_sees_the_colours_of_the_picture() {
         check(&path.display().to_string(), &model);
     }
     // Mirrors that scatter no light cost as many rays as allowed, whether or not shadow rays are traced.
-    let runaway = model(&format!(
-        "camera eye {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 7 }}
-         material mirror {{ ambient 1 1 1 specular 0.999 }} material pane {{ specular 1 transparency 0.5 diffuse 1 1 1 }}
-         plane one {{ material mirror normal 0 0 1 point 0 0 -1 }}
-         fplane other {{ material pane normal 0 0 1 xdir 1 0 0 point -9 -9 -0.999 dimensions 30 30 }}
-         light lamp {{ location 1 7 2 emissivity 5 5 5 }}"
-    ));
+    let runaway = model(
+        "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 7 }
+         material mirror { ambient 1 1 1 specular 0.999 } material pane { specular 1 transparency 0.5 diffuse 1 1 1 }
+         plane one { material mirror normal 0 0 1 point 0 0 -1 }
+         fplane other { material pane normal 0 0 1 xdir 1 0 0 point -9 -9 -0.999 dimensions 30 30 }
+         light lamp { location 1 7 2 emissivity 5 5 5 }"
+    );
     check("runaway", &runaway);
 }
