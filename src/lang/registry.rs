@@ -105,16 +105,17 @@ impl Registry {
     /// Returns the notation of an entity of this kind. If a type has the kind's own name, that type is the example.
     pub(crate) fn example(&self, kind: Kind, name: &str, syntax: Syntax) -> String {
         let is_one = |entity: &Entity| entity.kind() == kind && !entity.refers_to(kind);
-        let entity = self.find(&kind.to_string()).or_else(|| self.simplest(is_one));
+        let entity = self.find(&kind.to_string()).or_else(|| self.by_simplicity(is_one).first().copied());
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
-    /// Returns the entity type with the fewest attributes, none of them a list, among the types that meet a condition.
-    /// Of several such types, returns the first by name.
-    pub fn simplest(&self, is_one: impl Fn(&Entity) -> bool) -> Option<&'static Entity> {
+    /// Returns the entity types without a list that meet a condition, those with the fewest attributes first, then by
+    /// name.
+    pub fn by_simplicity(&self, is_one: impl Fn(&Entity) -> bool) -> Vec<&'static Entity> {
         let has_no_list = |entity: &Entity| entity.attributes().all(|its| its.arity().examples().len() == 1);
-        let all = self.iter().filter(|entity| is_one(entity) && has_no_list(entity));
-        all.min_by_key(|entity| entity.attributes().count())
+        let mut all: Vec<_> = self.iter().filter(|entity| is_one(entity) && has_no_list(entity)).collect();
+        all.sort_by_key(|entity| entity.attributes().count());
+        all
     }
 
     /// Describes the beginning of a scene, for users who have none yet.

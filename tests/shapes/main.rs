@@ -22,6 +22,7 @@ mod models;
 mod notes;
 mod parametric;
 mod places;
+mod planted;
 mod polynomials;
 mod query;
 mod ranges;

@@ -13,6 +13,7 @@ use tabray_core::scene::entity::Entity;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::value::{Datum, Type};
 use tabray_exact::formula::variables::{CURVE, HEIGHT, PATCH};
+use tabray_lang::reader;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 use tempfile::TempDir;
@@ -56,6 +57,42 @@ impl SceneFolder {
 
     pub fn folder(&self) -> &Path {
         self.0.path()
+    }
+}
+
+/// The entity types to which the entities of drawn scenes refer.
+pub struct StandIns {
+    /// The simplest object that is closed and bounded, or the simplest one if none is.
+    object: Option<&'static Entity>,
+    shaders: Vec<&'static Entity>,
+}
+
+impl StandIns {
+    /// Chooses from a registry, without those that are `shunned`.
+    pub fn new(registry: &Registry, scenes: &SceneFolder, shunned: &[&'static Entity]) -> Self {
+        let is_one = |other: &Entity, kind: Kind| {
+            let is_shunned = shunned.iter().any(|its| its.name == other.name);
+            other.kind() == kind && !other.refers_to(kind) && !is_shunned
+        };
+        let shaders = registry.iter().filter(|other| is_one(other, Kind::Shader)).collect();
+        let mut stand_ins = Self { object: None, shaders };
+        let objects = registry.by_simplicity(|other| is_one(other, Kind::Object));
+        let is_closed = |object: &&&'static Entity| {
+            let text = Draw::new(object.name).scene(registry, object, &stand_ins);
+            let read = reader::read(registry, "scene", scenes.folder(), text.as_bytes(), None);
+            let shapes = read.map(|loaded| loaded.model.objects).unwrap_or_default();
+            shapes.first().is_some_and(|object| {
+                object.shape.why_not_closed().is_none() && object.shape.facts().bounds.is_some()
+            })
+        };
+        stand_ins.object = objects.iter().find(is_closed).or(objects.first()).copied();
+        stand_ins
+    }
+
+    /// Returns those that occur in a drawn scene.
+    pub fn in_scene(&self, scene: &str) -> impl Iterator<Item = &'static Entity> {
+        let is_in = |other: &&Entity| scene.contains(&format!("{} {}\n", other.name, name(other.kind())));
+        self.shaders.iter().chain(&self.object).copied().filter(is_in)
     }
 }
 
@@ -110,7 +147,7 @@ impl Draw {
     }
 
     /// Draws a scene with an entity of this type, and with the entities that it may refer to.
-    pub fn scene(&mut self, registry: &Registry, entity: &'static Entity) -> String {
+    pub fn scene(&mut self, registry: &Registry, entity: &'static Entity, stand_ins: &StandIns) -> String {
         let mut text = String::new();
         for kind in [Kind::Camera, Kind::Material, Kind::Texture] {
             let its = |other: &&'static Entity| other.kind() == kind;
@@ -123,10 +160,9 @@ impl Draw {
                 text += &self.entity(other, name(kind));
             }
         }
-        let is_plain = |other: &Entity| other.kind() == Kind::Object && !other.refers_to(Kind::Object);
         let mut objects = String::new();
         if entity.refers_to(Kind::Object)
-            && let Some(other) = registry.simplest(is_plain)
+            && let Some(other) = stand_ins.object
         {
             let most = entity.attributes().filter(|its| is_name_of(*its, Kind::Object));
             let most = most.map(|its| its.arity().examples().into_iter().max().unwrap_or(1)).max();
@@ -144,7 +180,7 @@ impl Draw {
                 // Which shaders there are changes nothing else that is drawn.
                 let mut own = Pcg32::new(self.others.next_u32().into(), 2);
                 swap(&mut self.others, &mut own);
-                text += &self.aside(|draw| draw.shader(registry, entity));
+                text += &self.aside(|draw| draw.shader(registry, entity, &stand_ins.shaders));
                 self.others = own;
             }
             text += &objects;
@@ -154,11 +190,11 @@ impl Draw {
     }
 
     /// Draws a shader that others can refer to, with the texture that it may refer to.
-    fn shader(&mut self, registry: &Registry, user: &Entity) -> String {
-        let is_simple =
-            |other: &&'static Entity| other.kind() == Kind::Shader && !other.refers_to(Kind::Shader);
-        let shaders: Vec<_> = registry.iter().filter(is_simple).collect();
-        let shader = self.pick(&shaders);
+    fn shader(&mut self, registry: &Registry, user: &Entity, shaders: &[&'static Entity]) -> String {
+        if shaders.is_empty() {
+            return String::new();
+        }
+        let shader = self.pick(shaders);
         let needs = |kind| shader.refers_to(kind) && !user.refers_to(kind);
         let mut text = String::new();
         for kind in [Kind::Material, Kind::Texture].into_iter().filter(|kind| needs(*kind)) {

@@ -15,10 +15,12 @@ mod surface;
 
 pub use promise::Promise;
 
-use draw::{Draw, SceneFolder};
+use draw::{Draw, SceneFolder, StandIns};
 use promise::Fault;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::slice;
+use std::sync::Mutex;
 use tabray_core::parallel;
 use tabray_core::scene::choice::{Choice, ChoiceName};
 use tabray_core::scene::entity::Entity;
@@ -32,13 +34,13 @@ use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
 /// The number of scenes that are drawn for an entity type.
-const SCENES: usize = 40;
+const SCENES: usize = 24;
 
 /// One of this many scenes is also tried at its objects' extremes.
 const EXTREMES: usize = 8;
 
 /// The number of rays that are traced at each object of a drawn scene.
-const RAYS: usize = 30;
+const RAYS: usize = 25;
 
 /// A promise that a plugin breaks.
 #[derive(Clone, Debug)]
@@ -83,9 +85,9 @@ pub fn assert_kept() {
 
 /// Returns the gravest breach of each entity type of a registry, and of each profile.
 pub fn breaches(registry: &Registry) -> Vec<Breach> {
-    let scenes = SceneFolder::new();
+    let trial = Trial::new(registry);
     let entities: Vec<_> = registry.iter().collect();
-    let of_each = parallel::map(entities.len(), |index| of_entity(registry, entities[index], &scenes));
+    let of_each = parallel::map(entities.len(), |index| trial.breach_of(entities[index]));
     let mut found: Vec<_> = of_each.into_iter().flatten().collect();
     found.extend(inventory::iter::<Profile>().filter_map(of_profile));
     found.sort_by(|a, b| (&a.place, &a.plugin).cmp(&(&b.place, &b.plugin)));
@@ -94,7 +96,44 @@ pub fn breaches(registry: &Registry) -> Vec<Breach> {
 
 /// Returns the gravest breach of one entity type of a registry.
 pub fn breach_of(registry: &Registry, entity: &'static Entity) -> Option<Breach> {
-    of_entity(registry, entity, &SceneFolder::new())
+    Trial::new(registry).breach_of(entity)
+}
+
+/// The entity types of a registry, and what was found of them.
+struct Trial<'r> {
+    registry: &'r Registry,
+    scenes: SceneFolder,
+    /// By the entity types' names.
+    found: Mutex<BTreeMap<&'static str, Option<Breach>>>,
+}
+
+impl<'r> Trial<'r> {
+    fn new(registry: &'r Registry) -> Self {
+        Self { registry, scenes: SceneFolder::new(), found: Mutex::default() }
+    }
+
+    /// Returns the gravest breach of an entity type that is its own: not of the types that its scenes refer to.
+    fn breach_of(&self, entity: &'static Entity) -> Option<Breach> {
+        let known = |found: &Mutex<BTreeMap<_, _>>| found.lock().ok()?.get(entity.name).cloned();
+        if let Some(known) = known(&self.found) {
+            return known;
+        }
+        let mut shunned = Vec::new();
+        let breach = loop {
+            let stand_ins = StandIns::new(self.registry, &self.scenes, &shunned);
+            let Some(breach) = of_entity(self.registry, entity, &self.scenes, &stand_ins) else { break None };
+            let culprits = stand_ins.in_scene(&breach.scene).filter(|other| self.breach_of(other).is_some());
+            let before = shunned.len();
+            shunned.extend(culprits);
+            if shunned.len() == before {
+                break Some(breach);
+            }
+        };
+        if let Ok(mut found) = self.found.lock() {
+            found.insert(entity.name, breach.clone());
+        }
+        breach
+    }
 }
 
 /// Returns the gravest breach of each object and light of a scene, and of its camera.
@@ -133,13 +172,18 @@ fn breach(entity: &Entity, Fault { promise, found }: Fault, scene: String) -> Br
     }
 }
 
-/// Returns the gravest breach of an entity type in the scenes that are drawn for it.
-fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder) -> Option<Breach> {
+/// Returns the gravest breach in the scenes that are drawn for an entity type.
+fn of_entity(
+    registry: &Registry,
+    entity: &'static Entity,
+    scenes: &SceneFolder,
+    stand_ins: &StandIns,
+) -> Option<Breach> {
     let mut draw = Draw::new(entity.name);
     let (mut gravest, mut refused, mut models, mut hits): (Option<Breach>, _, _, _) = (None, None, 0, 0);
     let mut seen = String::new();
     for index in 0..SCENES {
-        let text = draw.scene(registry, entity);
+        let text = draw.scene(registry, entity, stand_ins);
         let accuracy = if index % 4 == 3 { Accuracy::Strict } else { Accuracy::Exact };
         let model = match reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy)) {
             Ok(loaded) => loaded.model,
@@ -170,19 +214,27 @@ fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder)
         if let Some(fault) = fault
             && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
         {
+            let ends = fault.promise == Promise::RayIsQuick;
             gravest = Some(breach(entity, fault, text.clone()));
+            if ends {
+                break;
+            }
         }
         if entity.kind() == Kind::Object && index % EXTREMES == 0 {
-            for extra in ["", extremes::VARIANTS[index / EXTREMES % extremes::VARIANTS.len()]] {
-                let text = format!("{text}{extra}\n");
-                // An object may have no inside, or there may be no copies.
-                let read = reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy));
-                let Ok(loaded) = read else { continue };
-                if let Err(fault) = extremes::try_objects(&loaded.model.objects)
-                    && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
-                {
-                    gravest = Some(breach(entity, fault, text));
-                }
+            // An object may have no inside, or there may be no copies.
+            let extra = extremes::VARIANTS[index / EXTREMES % extremes::VARIANTS.len()];
+            let with_copy = format!("{text}{extra}\n");
+            let read = |text: &str| {
+                reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy))
+            };
+            let (text, objects) = match read(&with_copy) {
+                Ok(loaded) => (with_copy, loaded.model.objects),
+                Err(_) => (text.clone(), model.objects),
+            };
+            if let Err(fault) = extremes::try_objects(&objects)
+                && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
+            {
+                gravest = Some(breach(entity, fault, text));
             }
         }
         seen = text;

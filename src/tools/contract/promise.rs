@@ -23,6 +23,8 @@ pub enum Promise {
     AgreesWithItsProof,
     /// The bounds contain the whole shape.
     BoundsHoldHits,
+    /// A hit from far away is where one from near is.
+    HitIsAccurate,
     /// A normal is perpendicular to the surface.
     NormalIsUpright,
     /// Normals of neighbouring points point to the same side of the surface.
@@ -35,8 +37,12 @@ pub enum Promise {
     StartIsNoHit,
     /// A shape recognises points that lie on it.
     HitIsTouched,
+    /// The coordinates u and v are from 0 to 1.
+    UvIsWithin,
     /// Some ray hits the shape.
     IsMet,
+    /// A ray's hit is found within a limited time.
+    RayIsQuick,
     /// Reflectivities are finite and not below 0.
     ReflectivityIsSound,
     /// A material's interface reflects a fraction, and transmits the rest to the other side or absorbs it.
@@ -55,7 +61,7 @@ pub enum Promise {
 
 impl Promise {
     /// All promises, the gravest first.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 26] = [
         Self::TakesWhatItsTableAllows,
         Self::DumpLoadsAgain,
         Self::DistanceIsInItsSpan,
@@ -65,13 +71,16 @@ impl Promise {
         Self::HitIsOnTheSurface,
         Self::AgreesWithItsProof,
         Self::BoundsHoldHits,
+        Self::HitIsAccurate,
         Self::NormalIsUpright,
         Self::NormalsAgree,
         Self::NormalsPointOut,
         Self::IsNotMetAgain,
         Self::StartIsNoHit,
         Self::HitIsTouched,
+        Self::UvIsWithin,
         Self::IsMet,
+        Self::RayIsQuick,
         Self::ReflectivityIsSound,
         Self::LightGoesOn,
         Self::LightIsFinite,
@@ -109,6 +118,13 @@ impl Promise {
                 "make `distance` and the shape's `Equation` describe the same surface, clipped in the same way"
             }
             Self::BoundsHoldHits => "make `bounds` contain every point of the shape; return none if in doubt",
+            Self::HitIsAccurate => {
+                "compute `distance` from the ray's closest approach to the shape: differences of large squares lose all digits"
+            }
+            Self::UvIsWithin => {
+                "scale u and v to 0 to 1, also at seams and poles; `uv` is `None` for a shape that has none"
+            }
+            Self::RayIsQuick => "bound the number of steps in `distance`",
             Self::HitIsTouched => {
                 "make `is_on_surface` true within at least the error that it is given, and `t_bounds` without a certain end there; if in doubt, leave out `is_on_surface`, and `Bracketed`"
             }
@@ -164,6 +180,9 @@ impl fmt::Display for Promise {
             Self::AgreesWithItsProof => "the distance is that of the first hit that `certify` proves",
             Self::BoundsHoldHits => "the bounds contain every hit",
             Self::HitIsTouched => "`is_on_surface` is true at each point where a ray hits the shape",
+            Self::HitIsAccurate => "a hit from far away is where one from near is",
+            Self::UvIsWithin => "the coordinates u and v are from 0 to 1",
+            Self::RayIsQuick => "`distance` takes at most as long as 400,000 sines",
             Self::NormalIsUpright => "a normal is perpendicular to the surface",
             Self::NormalsAgree => "neighbouring normals point to the same side",
             Self::NormalsPointOut => "the normals of a convex shape point outward",

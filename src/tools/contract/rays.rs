@@ -2,15 +2,16 @@
 
 use super::draw::Draw;
 use super::looks::shader;
-use super::promise::Fault;
+use super::promise::{Fault, Promise};
 use super::shape::{GRAZING, RayTrial};
 use glam::DVec3;
 use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
 use tabray_core::scene::model::Object;
 use tabray_core::scene::value::Datum;
+use tabray_core::simd::cpu::Cpu;
 
 /// The number of first rays that are aimed exactly at a point, which may be a corner or the centre of an object.
-const EXACT: usize = 3;
+const EXACT: usize = 6;
 
 /// The greatest distance from the origin of a point that rays are aimed at, in world units: numbers beyond are limits,
 /// not positions.
@@ -30,7 +31,7 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
     let mut outcome = Outcome { hits: 0, gravest: None };
     for index in 0..rays {
         let ray = ray(&aims, draw, index);
-        let tried = try_ray(&RayTrial { shape: &object.shape, ray, is_exact: index < EXACT }, draw);
+        let tried = try_ray(&RayTrial { shape: &object.shape, ray, is_exact: index < EXACT }, index, draw);
         let tried = tried.and_then(|hit| match hit {
             Some(at) => {
                 let side = Side::seen_along(ray.dir, object.shape.normal(at));
@@ -46,8 +47,13 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
             }
             Ok(None) => {}
             Err(fault) => {
+                let ends = fault.promise == Promise::RayIsQuick;
                 if outcome.gravest.as_ref().is_none_or(|gravest| fault.promise < gravest.promise) {
                     outcome.gravest = Some(fault);
+                }
+                // Hundreds of rays would take long.
+                if ends {
+                    break;
                 }
             }
         }
@@ -72,7 +78,9 @@ fn aims(object: &Object) -> Vec<DVec3> {
 fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
     let aim = aims[(draw.part() * aims.len() as f64) as usize % aims.len()];
     if index < EXACT {
-        return Ray { origin: aim - 10.0 * DVec3::AXES[index], dir: DVec3::AXES[index] };
+        let axis = DVec3::AXES[index % 3];
+        let dir = if index < 3 { axis } else { -axis };
+        return Ray { origin: aim - 10.0 * dir, dir };
     }
     // The offset is from 0.01 to 10 world units, evenly distributed over its logarithm.
     let off = draw.direction() * libm::exp10(draw.part() * 3.0 - 2.0);
@@ -81,14 +89,17 @@ fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
     Ray { origin: aim + from, dir }
 }
 
-/// Checks a shape with one ray; returns the point of the hit, if there is one.
-fn try_ray(tried: &RayTrial, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
+/// Checks a shape with one ray, the given number of its rays; returns the point of the hit, if there is one.
+fn try_ray(tried: &RayTrial, number: usize, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
+    tried.check_speed()?;
     let distance = tried.distance_in_range(&tried.ray, &RayRange::ALL)?;
     tried.check_repeats(distance)?;
-    tried.check_packets(distance)?;
+    let levels: Vec<_> = Cpu::all().collect();
+    tried.check_packets(distance, levels[number % levels.len()])?;
     tried.check_drift()?;
     tried.check_ranges(distance)?;
     tried.check_proof(distance)?;
+    tried.check_beside(distance)?;
     if distance == MISS {
         return Ok(None);
     }
@@ -98,6 +109,7 @@ fn try_ray(tried: &RayTrial, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
         tried.check_from_elsewhere(&met, draw)?;
     }
     if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
+        tried.check_from_afar(&met)?;
         tried.check_normal(&met)?;
         if !tried.shape.can_hit_itself(Side::Outside) {
             tried.check_convex(&met)?;
@@ -105,5 +117,7 @@ fn try_ray(tried: &RayTrial, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
         tried.check_leaving(&met, draw)?;
         tried.is_touched(&met, draw)?;
     }
+    // After all these rays, the first one has the same hit.
+    tried.check_repeats(distance)?;
     Ok(Some(met.at))
 }

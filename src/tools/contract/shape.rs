@@ -2,8 +2,11 @@
 
 use super::looks::same_bits;
 use super::promise::{Fault, Promise};
+use crate::clock;
 use glam::DVec3;
 use std::f64::consts::TAU;
+use std::hint::black_box;
+use std::time::Duration;
 use tabray_core::geometry::ray::{MISS, Ray, RayBall, RayError, RayRange, Side};
 use tabray_core::geometry::ray_packet::{HitRecordMut, RayPacket, SurfaceInteraction};
 use tabray_core::geometry::sight::Sight;
@@ -26,9 +29,18 @@ pub const SLACK: f64 = 1e-7;
 /// whether and where it hits.
 pub const GRAZING: f64 = 0.05;
 
+/// The least depth of a gap, in world units: at a cusp, hits beside a ray are a little nearer.
+const GAP: f64 = 1e-2;
+
 /// The distance between rays and the ray that represents them, as a fraction of the same numbers: some thousand times
 /// that of the rays of an undistorted copy.
 const DRIFT: f64 = 1e-10;
+
+/// The number of sines that take as long as a ray may.
+const SINES: u32 = 400_000;
+
+/// A duration that is shorter than that of these sines.
+const QUICK: Duration = Duration::from_millis(1);
 
 /// A shape and the ray with which it is tried.
 pub struct RayTrial<'s> {
@@ -80,7 +92,7 @@ impl RayTrial<'_> {
             .fault(format!("first {distance}, then {again}, {}", describe_ray(&self.ray))))
     }
 
-    pub fn check_packets(&self, distance: f64) -> Result<(), Fault> {
+    pub fn check_packets(&self, distance: f64, cpu: Cpu) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
         let fault =
             |found: String| Err(Promise::PacketsAgree.fault(format!("{found}, {}", describe_ray(ray))));
@@ -94,13 +106,11 @@ impl RayTrial<'_> {
             return fault(format!("`distance` gives {distance}, and `refine` {refined}"));
         }
         let (origin, dir) = (Vectors::<LANES>::of(ray.origin), Vectors::<LANES>::of(ray.dir));
-        Cpu::all().try_for_each(|cpu| {
-            let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
-            let found = self.packet_fault(cpu, rays, distance).or_else(|| {
-                (distance != MISS).then(|| self.interaction_fault(cpu, rays, distance)).flatten()
-            });
-            found.map_or(Ok(()), |found| fault(format!("{found} ({cpu})")))
-        })
+        let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), 0.0);
+        let found = self
+            .packet_fault(cpu, rays, distance)
+            .or_else(|| (distance != MISS).then(|| self.interaction_fault(cpu, rays, distance)).flatten());
+        found.map_or(Ok(()), |found| fault(format!("{found} ({cpu})")))
     }
 
     /// Describes the difference between the distance of a packet of copies of the ray and that of the ray.
@@ -211,6 +221,63 @@ impl RayTrial<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Checks that a ray hits what the rays on all its sides hit: else it falls through a seam.
+    pub fn check_beside(&self, distance: f64) -> Result<(), Fault> {
+        let (across, up) = self.ray.dir.any_orthonormal_pair();
+        // Seams often run along axes, and so would these two.
+        let step = ASIDE * self.size(10.0);
+        let beside = [across + up, across - up, up - across, -across - up].map(|aside| {
+            let ray = Ray { origin: self.ray.origin + step * aside, ..self.ray };
+            self.shape.distance(&ray, &RayRange::ALL)
+        });
+        let [least, most] = [beside.into_iter().fold(MISS, f64::min), beside.into_iter().fold(0.0, f64::max)];
+        let is_even = most < MISS && most - least <= 10.0 * step;
+        // At the tip of a cone, a proof says that it cannot tell.
+        let is_open = || {
+            self.shape.is_certified()
+                && matches!(
+                    self.shape.certify(&Sight::along(&self.ray), Precision::Double),
+                    Enclosure::Edge(_) | Enclosure::Doubtful(_)
+                )
+        };
+        if is_even && distance > most + GAP && !is_open() {
+            return Err(Promise::HitIsOnTheSurface.fault(format!(
+                "`distance` gives {distance}, and {least} to {most} for rays on all sides of it, {}",
+                describe_ray(&self.ray)
+            )));
+        }
+        Ok(())
+    }
+
+    /// Checks that the cost of a hit is limited, compared with that of sines on the same thread.
+    pub fn check_speed(&self) -> Result<(), Fault> {
+        let hit = || {
+            black_box(self.shape.distance(&self.ray, &RayRange::ALL));
+        };
+        let sines = || {
+            black_box((0..SINES).map(|number| libm::sin(f64::from(number))).sum::<f64>());
+        };
+        let is_slow = || {
+            let start = clock::now();
+            hit();
+            clock::now() - start > QUICK
+        };
+        // The clock may count other work, once or twice.
+        if !(is_slow() && is_slow()) {
+            return Ok(());
+        }
+        let [ray, most] = clock::least(Duration::ZERO, [&mut { hit }, &mut { sines }]);
+        if ray <= most {
+            return Ok(());
+        }
+        let found = format!(
+            "`distance` takes as long as {:.0} sines, {}",
+            f64::from(SINES) * ray / most,
+            describe_ray(&self.ray)
+        );
+        Err(Promise::RayIsQuick.fault(found))
     }
 
     /// For a shape without an equation, only the bounds are proven. They have a promise of their own.

@@ -3,7 +3,7 @@
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use super::shape::{GRAZING, RayTrial, SLACK, describe_ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
 use tabray_core::world::coincidence;
@@ -11,6 +11,15 @@ use tabray_core::world::coincidence;
 /// A step that is far longer than rounding errors, and far shorter than visible details: in world units around a hit,
 /// else as a fraction of [`RayTrial::size`].
 const STRIDE: f64 = 1e-4;
+
+/// The distance from which a hit is tried again, in world units: there, squares of coordinates lose 14 of 16 digits.
+const AFAR: f64 = 1e7;
+
+/// The distance from just before a hit, in world units, which is below any that a plugin may take for rounding.
+const CLOSE: f64 = 1e-5;
+
+/// What rounding may add to u and v.
+const UV_SLACK: f64 = 1e-9;
 
 /// A hit that is not blurred by rounding.
 pub struct SurfaceHit {
@@ -20,15 +29,65 @@ pub struct SurfaceHit {
 }
 
 impl RayTrial<'_> {
-    /// Returns the hit at a distance, after checking that the normal is a unit vector.
+    /// Returns the hit at a distance, after checking its normals, and its u and v.
     pub fn hit_at(&self, distance: f64) -> Result<SurfaceHit, Fault> {
         let at = self.ray.at(distance);
         let normal = self.shape.normal(at);
-        if (normal.length() - 1.0).abs() <= 1e-9 {
-            return Ok(SurfaceHit { distance, at, normal });
+        let shading = self.shape.shading_normal(at, normal);
+        for (what, normal) in [("normal", normal), ("shading normal", shading)] {
+            if !((normal.length() - 1.0).abs() <= 1e-9) {
+                let found = format!("at {at} the {what} is {normal}, of length {}", normal.length());
+                return Err(Promise::NormalIsUnit.fault(found));
+            }
         }
-        let found = format!("at {at} the normal is {normal}, of length {}", normal.length());
-        Err(Promise::NormalIsUnit.fault(found))
+        if shading.dot(normal) <= 0.0 {
+            let found = format!("at {at} the shading normal is {shading}, and the surface's own {normal}");
+            return Err(Promise::NormalsAgree.fault(found));
+        }
+        if let Some(uv) = self.shape.uv(at)
+            && !(uv.cmpge(DVec2::splat(-UV_SLACK)) & uv.cmple(DVec2::splat(1.0 + UV_SLACK))).all()
+        {
+            return Err(Promise::UvIsWithin.fault(format!("at {at} they are {uv}")));
+        }
+        Ok(SurfaceHit { distance, at, normal })
+    }
+
+    /// Checks that a ray from just before a hit hits it, and that one from far away hits what one from nearby does.
+    pub fn check_from_afar(&self, met: &SurfaceHit) -> Result<(), Fault> {
+        let Ray { dir, .. } = self.ray;
+        let from_before = |at: DVec3, before: f64| {
+            let ray = Ray { origin: at - before * dir, dir };
+            self.distance_in_range(&ray, &RayRange::ALL).map(|found| (ray, found))
+        };
+        let (ray, found) = from_before(met.at, CLOSE)?;
+        if (found - CLOSE).abs() > self.tolerance(&ray, &RayRange::ALL, found) {
+            return Err(Promise::HitIsOnTheSurface.fault(format!(
+                "it is hit at {}, {}; but `distance` gives {found} from {CLOSE:e} before that point, {}",
+                met.at,
+                describe_ray(&self.ray),
+                describe_ray(&ray)
+            )));
+        }
+        let (far, found) = from_before(met.at, AFAR)?;
+        let tolerance = self.tolerance(&far, &RayRange::ALL, found);
+        if found == MISS {
+            return match tolerance.is_finite() {
+                true => Err(Promise::HitIsAccurate.fault(format!(
+                    "it is hit at {}, but not {}",
+                    met.at,
+                    describe_ray(&far)
+                ))),
+                false => Ok(()),
+            };
+        }
+        let (_, near) = from_before(far.at(found), 1.0)?;
+        let off = (near - 1.0).abs();
+        if off > tolerance {
+            let off = off * met.normal.dot(dir).abs();
+            let found = format!("the hit is {off:.0e} off the surface, {}", describe_ray(&far));
+            return Err(Promise::HitIsAccurate.fault(found));
+        }
+        Ok(())
     }
 
     pub fn check_bounds(&self, at: DVec3) -> Result<(), Fault> {
