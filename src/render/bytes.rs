@@ -20,8 +20,15 @@ pub fn to_byte(channel: f64) -> u8 {
 /// Converts colours to the bytes that show them.
 pub(crate) fn to_bytes(cpu: Cpu, display: &Display, colours: View, pixels: &mut [[u8; 3]]) {
     let Some(gain) = display.truncates() else {
+        // Much of an image is of one colour.
+        let mut last = None;
         for (index, pixel) in pixels.iter_mut().enumerate() {
-            *pixel = display.bytes(colours.get(index));
+            let colour = colours.get(index);
+            *pixel = match last {
+                Some((same, bytes)) if same == colour => bytes,
+                _ => display.bytes(colour),
+            };
+            last = Some((colour, *pixel));
         }
         return;
     };

@@ -135,6 +135,42 @@ static SRGB: LazyLock<[f64; 255]> = LazyLock::new(|| {
     })
 });
 
+/// The number of leading bits of a channel that tell its cell: those of its exponent, and 7 of its mantissa.
+const CELL_BITS: u32 = 64 - 52 + 7;
+
+/// For each cell from that of the least light of byte 1 to that of white, the byte of its least light. A cell spans less
+/// than 1/128 of its light, and so at most one step of the bytes.
+static CELLS: LazyLock<(u64, Vec<u8>)> = LazyLock::new(|| {
+    let (first, last) = (cell(SRGB[0]), cell(1.0));
+    let byte = |cell: u64| {
+        let light = f64::from_bits(cell << (64 - CELL_BITS));
+        SRGB.partition_point(|least| *least <= light) as u8
+    };
+    (first, (first..=last).map(byte).collect())
+});
+
+/// Returns the cell of a channel that is not below 0.
+fn cell(channel: f64) -> u64 {
+    channel.to_bits() >> (64 - CELL_BITS)
+}
+
+/// The slope of the curve of sRGB at the least light of each byte.
+static STEEPEST: LazyLock<[f64; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|byte| match byte.checked_sub(1).map(|index| SRGB[index]) {
+        Some(light) if light > LINE.0 => 1.055 / 2.4 * libm::pow(light, 1.0 / 2.4 - 1.0),
+        _ => LINE.1,
+    })
+});
+
+/// Returns the byte of light under sRGB. The light is finite and not below 0.
+fn srgb_byte(light: f64) -> u8 {
+    let (first, bytes) = &*CELLS;
+    let Some(index) = cell(light).checked_sub(*first) else { return 0 };
+    let byte = bytes.get(index as usize).copied().unwrap_or(u8::MAX);
+    let is_next = SRGB.get(usize::from(byte)).is_some_and(|least| *least <= light);
+    byte + u8::from(is_next)
+}
+
 impl Display {
     /// Describes how light is shown by these rules, with an exposure in stops. The notes' rules know neither tone nor
     /// transfer.
@@ -207,6 +243,22 @@ impl Display {
         }
     }
 
+    /// Tells whether the shown colours of all light between these bounds are less than a distance apart. `false` where
+    /// only the shown colours themselves would tell.
+    pub fn are_within(&self, [low, high]: [Rgb; 2], distance: f64) -> bool {
+        // The slope of the code falls as the light grows.
+        let apart = |channel: usize| {
+            let from = (self.gain * low[channel]).clamp(0.0, 1.0);
+            let slope = match self.transfer {
+                Transfer::Linear => 1.0,
+                Transfer::Srgb => STEEPEST[usize::from(srgb_byte(from))],
+            };
+            slope * ((self.gain * high[channel]).min(1.0) - from)
+        };
+        // Rounding is far below a part in a hundred.
+        self.tone == Tone::Clip && (0..3).all(|channel| apart(channel) < 0.99 * distance)
+    }
+
     /// Returns light between two bounds whose shown colour is about midway between those of the bounds.
     pub fn middle(&self, [low, high]: [Rgb; 2]) -> Rgb {
         let gain = self.gain;
@@ -249,7 +301,7 @@ impl Display {
     fn byte(&self, channel: f64) -> u8 {
         match self.transfer {
             Transfer::Linear => (255.0 * channel).round() as u8,
-            Transfer::Srgb => SRGB.partition_point(|least| *least <= channel) as u8,
+            Transfer::Srgb => srgb_byte(channel),
         }
     }
 }
@@ -296,6 +348,16 @@ mod tests {
     }
 
     #[test]
+    fn the_byte_of_a_cell_is_that_of_the_least_lights() {
+        for least in *SRGB {
+            for light in [least.next_down(), least, least.next_up(), 0.996 * least, 1.004 * least] {
+                assert_eq!(srgb_byte(light), SRGB.partition_point(|least| *least <= light) as u8, "{light}");
+            }
+        }
+        assert_eq!([0.0, 1e-300, 1.0, 2.0, f64::MAX].map(srgb_byte), [0, 0, 255, 255, 255]);
+    }
+
+    #[test]
     fn greys_of_the_tone_mapper_are_as_published() {
         // Below the toe, on the line, at the shoulder, and far beyond it.
         for (light, shown) in [(0.04, 0.01), (0.5, 0.46), (0.8, 0.76), (1.04, 0.88), (1e6, 1.0)] {
@@ -338,6 +400,8 @@ mod tests {
                 let [least, most] = display.shown_within([low, high]);
                 let shown = display.shown(inside);
                 prop_assert!((shown - least).min_element() > -1e-14 && (most - shown).min_element() > -1e-14);
+                let apart = (most - least).max_element();
+                prop_assert!(!display.are_within([low, high], apart), "{low} {high}");
                 let steepest = display.steepest() * (high - low).max_element();
                 prop_assert!((display.shown(low) - shown).abs().max_element() <= steepest + 1e-12);
             }

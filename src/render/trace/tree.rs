@@ -197,7 +197,14 @@ impl Ends {
             let apart = 255.0 * FLATTEST * gain * (high[channel] - low[channel]);
             apart < ENDED || gain * low[channel] >= 1.0
         };
-        (0..3).all(may_be) && self.levels_apart([low, high]) < ENDED
+        (0..3).all(may_be) && (self.are_known([low, high]) || self.levels_apart([low, high]) < ENDED)
+    }
+
+    /// Tells, without computing shown colours, that the bounds of a colour are less than [`ENDED`] apart, where that is
+    /// plain.
+    fn are_known(&self, [low, high]: [Rgb; 2]) -> bool {
+        let above_white = 255.0 * FLATTEST * self.display.gain() * (high - low).max_element();
+        (!self.is_averaged || above_white < ENDED) && self.display.are_within([low, high], ENDED / 255.0)
     }
 }
 
@@ -250,7 +257,13 @@ impl Tree {
     /// Tells how the tree has ended.
     pub fn end(&self, ends: &Ends) -> End {
         let Some(bounds) = self.bounds() else { return End { colour: self.found, apart: f64::INFINITY } };
+        if bounds[0] == bounds[1] {
+            return End { colour: bounds[0], apart: 0.0 };
+        }
         let middle = ends.display.middle(bounds);
+        if ends.are_known(bounds) {
+            return End { colour: middle, apart: 0.0 };
+        }
         match ends.levels_apart(bounds) {
             apart if apart <= SHOWN => End { colour: middle, apart: 0.0 },
             // The pixel's other samples may be known better.
