@@ -16,6 +16,7 @@ mod counted;
 mod emitted;
 mod extremes;
 mod falsify;
+mod far_rays;
 #[cfg(feature = "fuzz")]
 mod fuzz;
 mod gallery;

@@ -46,6 +46,10 @@ impl Approach {
                     steps.iter().flat_map(|step| <[f64; 2]>::from(two_product(*step, ray.dir[axis])));
                 exact_sum(iter::once(ray.origin[axis]).chain(products)).high
             }));
+            // Products of numbers above 1e300 overflow.
+            if !at.is_finite() {
+                return Self::none(ray);
+            }
             let before = left;
             left = (middle - at).length();
             if before <= FAR * size || left > 0.5 * before {

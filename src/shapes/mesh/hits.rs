@@ -221,10 +221,10 @@ impl Surface {
         let reach = line.origin.iter().fold(0.0, |reach, at| larger(reach, at.magnitude()));
         let fine = (reach > FAR * (high - low).max_element()).then(|| sight.line::<Wide>());
         if let Some(fine) = &fine {
-            let Some((entry, _)) = fine.clip(low, high) else { return (Enclosure::Misses, 0) };
-            let at = fine.at(Wide::point(entry));
-            // The mesh is smaller than the error of the line there.
-            if (0..3).all(|axis| at[axis].width() > f256::from(high[axis] - low[axis])) {
+            if fine.clip(low, high).is_none() {
+                return (Enclosure::Misses, 0);
+            }
+            if let Some(entry) = fine.blurred_entry(low, high) {
                 return (Enclosure::Doubtful(entry), 0);
             }
         } else if precision == Precision::Double {

@@ -102,6 +102,12 @@ where
     dyn Patches: PatchesIn<F>,
 {
     pub fn first(&self) -> Found<F> {
+        // All parts would be tried.
+        if let Some(entry) =
+            self.shape.tree.bounds().and_then(|all| self.line.blurred_entry(all.low, all.high))
+        {
+            return Found { hit: None, undecided: Some(entry), narrow: None };
+        }
         let (mut waiting, mut number) = (BinaryHeap::new(), 0);
         // Tests in `f64` are faster, and come first.
         let line = Line { origin: self.line.origin.map(nearly), dir: self.line.dir.map(nearly) };
