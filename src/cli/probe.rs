@@ -1,6 +1,7 @@
 //! `tabray probe`: explains one pixel.
 
 use crate::command::{Command, Group, Run};
+use crate::files::standard::StandardOutput;
 use crate::options::{method, scene};
 use crate::process::failure::Failure;
 use crate::process::visible::Visible;
@@ -50,7 +51,7 @@ inventory::submit! {
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = args.scene.load(registry, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
-    let mut out = BufWriter::new(io::stdout());
+    let mut out = BufWriter::new(StandardOutput);
     let plan = Plan::new(&model);
     let printed = renderer_with(1)?.run(|| {
         match args.json {

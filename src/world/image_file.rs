@@ -5,6 +5,7 @@ use crate::files::ImageBytes;
 use crate::files::held::SceneFile;
 use crate::texels::Texels;
 use crate::text;
+use crate::whole_image;
 use bytesize::ByteSize;
 use image::metadata::Orientation;
 use image::{
@@ -81,9 +82,14 @@ fn decode_from(
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(beside.saturating_add(ASIDE));
     let reader = ImageReader::new(bytes).with_guessed_format();
-    let mut reader = reader.map_err(|error| text::reason(&error))?;
-    reader.limits(limits);
+    let reader = reader.map_err(|error| text::reason(&error))?;
     let Some(format) = reader.format() else { return Err(other(reader.into_inner())) };
+    let bytes = reader.into_inner();
+    if !whole_image::has_end(format, bytes, length).map_err(|error| text::reason(&error))? {
+        return Err("it ends early".to_owned());
+    }
+    let mut reader = ImageReader::with_format(bytes, format);
+    reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(cannot)?;
     let (width, height) = decoder.dimensions();
     if width == 0 || height == 0 {

@@ -52,6 +52,7 @@ pub mod surface_point;
 pub mod texels;
 pub mod text;
 pub mod texture;
+mod whole_image;
 
 pub use accuracy::{Accuracy, AccuracyTag, Classic, Draft, Exact, NotClassic, Strict};
 pub use any_shape::AnyShape;

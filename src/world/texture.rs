@@ -250,6 +250,48 @@ mod tests {
         }
     }
 
+    /// Formats with an end show it. Those of lines of numbers have none.
+    #[test]
+    fn a_cut_image_is_refused_or_shows_the_same_texels() {
+        const LENGTHS: usize = 150;
+        let folder = TempDir::new().expect("a folder");
+        let noise = |x: u32, y: u32, channel: u32| ((x * 7919 + y * 104_729 + channel * 1299) % 251) as u8;
+        let picture = RgbImage::from_fn(40, 30, |x, y| Texel([0, 1, 2].map(|channel| noise(x, y, channel))));
+        for format in [
+            ImageFormat::Png,
+            ImageFormat::Bmp,
+            ImageFormat::Tiff,
+            ImageFormat::WebP,
+            ImageFormat::Jpeg,
+            ImageFormat::Pnm,
+            ImageFormat::Hdr,
+            ImageFormat::OpenExr,
+        ] {
+            let mut bytes = io::Cursor::new(Vec::new());
+            let picture = DynamicImage::ImageRgb8(picture.clone());
+            match format {
+                ImageFormat::Hdr | ImageFormat::OpenExr => picture.into_rgb32f().write_to(&mut bytes, format),
+                _ => picture.write_to(&mut bytes, format),
+            }
+            .expect("an image");
+            let bytes = bytes.into_inner();
+            let texels = |bytes: &[u8]| {
+                let texture = texture(&folder, "a", bytes);
+                texture.load().is_ok().then(|| {
+                    let all = (0..30).flat_map(|y| (0..40).map(move |x| [x, y]));
+                    all.map(|at| bytes_at(&texture, at)).collect::<Vec<_>>()
+                })
+            };
+            let whole = texels(&bytes).unwrap_or_else(|| panic!("{format:?} is not read"));
+            for cut in 0..LENGTHS {
+                let length = bytes.len() * cut / LENGTHS;
+                if let Some(shown) = texels(&bytes[..length]) {
+                    assert!(shown == whole, "{format:?}, {length} of {} bytes", bytes.len());
+                }
+            }
+        }
+    }
+
     #[test]
     fn transparent_texels_show_the_objects_own_colour() {
         let folder = TempDir::new().expect("a folder");

@@ -172,4 +172,6 @@ fn previews_and_parts_do_not_replace_finished_images() {
     assert_eq!((render(&["--quick", "-o", "a.quick.png"]).0, size("a.quick.png")), (0, (10, 7)));
     assert_eq!((render(&["--size", "40x30"]).0, size("a.png")), (0, (40, 30)));
     assert_eq!((render(&["--quick", "--force"]).0, size("a.png")), (0, (10, 7)));
+    // A draft gives way to a larger image, of whichever options.
+    assert_eq!((render(&["--size", "20"]).0, size("a.png")), (0, (20, 15)));
 }

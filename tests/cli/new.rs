@@ -1,7 +1,7 @@
 //! `tabray new`: what it writes works at once, and no existing file is overwritten.
 
 use crate::common::program::{folder, names_in, outcome, tabray};
-use crate::common::{load, render};
+use crate::common::{load, render, snapshots};
 use std::fs;
 use std::path::Path;
 use tabray::glam::{DVec2, DVec3};
@@ -78,6 +78,49 @@ fn a_new_scene_fits_its_mesh_at_any_scale() {
     let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "e", "--mesh", "blokc.obj"]));
     assert_eq!(status, 2);
     assert!(err.contains("it does not exist, but `block.obj` does"), "{err}");
+}
+
+/// A tetrahedron, with a camera, a lamp, a sun and a spotlight.
+const STAGED: &str = r#"{
+    "asset": {"version": "2.0"},
+    "extensionsUsed": ["KHR_lights_punctual"],
+    "extensions": {"KHR_lights_punctual": {"lights": [
+        {"type": "point", "intensity": 32, "color": [1, 0.5, 0.25]},
+        {"type": "directional", "intensity": 4},
+        {"type": "spot", "intensity": 0, "spot": {"outerConeAngle": 0.5}}
+    ]}},
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "aspectRatio": 1.5, "znear": 0.1}}],
+    "scenes": [{"nodes": [0, 1, 2, 3, 4]}],
+    "nodes": [
+        {"mesh": 0},
+        {"camera": 0, "translation": [0, 1, 6]},
+        {"translation": [0, 3, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        {"rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476],
+            "extensions": {"KHR_lights_punctual": {"light": 1}}},
+        {"translation": [0, 0, 9], "extensions": {"KHR_lights_punctual": {"light": 2}}}
+    ],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+        {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}
+    ],
+    "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+    "buffers": [{"byteLength": 72, "uri": "data:application/octet-stream;base64,AACAvwAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAEAAAAAAAAAAAAAAgD8AAIA/AAABAAIAAAABAAMAAQACAAMAAgAAAAMA"}]
+}"#;
+
+#[test]
+fn a_new_scene_has_the_camera_and_the_lights_of_its_file() {
+    let folder = folder();
+    fs::write(folder.path().join("a.gltf"), STAGED).expect("a file");
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "a", "--mesh", "a.gltf"]));
+    assert_eq!(status, 0, "{err}");
+    let text = fs::read_to_string(folder.path().join("a.ray")).expect("the scene");
+    let from = text.find("# The first camera").expect("a camera");
+    snapshots("meshes").bind(|| insta::assert_snapshot!("staged", &text[from..]));
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "a.ray", "--size", "96"]));
+    assert_eq!(status, 0, "{err}");
+    let picture = image::open(folder.path().join("a.png")).expect("a picture").into_rgb8();
+    assert!(picture.dimensions() == (96, 64) && picture.pixels().any(|pixel| pixel.0[0] > 100));
 }
 
 #[test]

@@ -89,6 +89,12 @@ fn nothing_outside_of_the_root_is_read() {
         let (status, said) = told(&folder, &format!("--root in {command}"));
         assert!(status != 0 && said.contains(OUTSIDE), "{command}: {said}");
     }
+    // Nor do guesses of what was meant look there.
+    let missing = format!("{HEAD}{}", SHOWN.replace('@', "kept.ppm"));
+    fs::write(folder.path().join("in/guess.ray"), missing).expect("a file");
+    assert!(told(&folder, "check in/guess.ray").1.contains("kept.png"));
+    let (_, said) = told(&folder, "check in/guess.ray --root in");
+    assert!(!said.contains("kept.png") && !said.contains("out/"), "{said}");
     // What is inside is read, by links too.
     assert_eq!(told(&folder, "check in/whole.ray --root in"), (0, "in/whole.ray: no errors\n".to_owned()));
     let (status, said) = told(&folder, "check in/plain.ray --root nowhere");

@@ -2,16 +2,21 @@
 
 use crate::process::failure::Failure;
 use glam::DVec3;
+use std::mem;
 use std::path::Path;
 use tabray_core::geometry::Rotation;
+use tabray_core::shapes::mesh::read::staging::Staging;
 use tabray_core::shapes::mesh::read::{self, Attributes, Model, Remark, Wanted};
 use tabray_core::shapes::mesh::{Look, Surface, ToWorld};
 use tabray_core::text::{self, count, shortest};
 use tabray_core::world::sensor::Sensor;
 
-/// Reads the surface of a file as a mesh of a scene is read, in the file's own coordinates.
-pub fn read(path: &Path, wanted: Wanted) -> Result<Surface, Failure> {
-    surface(path, model(path, wanted)?)
+/// Reads the surface of a file as a mesh of a scene is read, in the file's own coordinates, and what the file says
+/// beside it.
+pub fn read(path: &Path, wanted: Wanted) -> Result<(Surface, Staging), Failure> {
+    let mut model = model(path, wanted)?;
+    let staging = mem::take(&mut model.staging);
+    Ok((surface(path, model)?, staging))
 }
 
 fn model(path: &Path, wanted: Wanted) -> Result<Model, Failure> {

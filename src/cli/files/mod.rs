@@ -10,3 +10,4 @@ pub mod paths;
 pub mod picture;
 pub mod provenance;
 pub mod several;
+pub mod standard;

@@ -4,6 +4,7 @@
 use crate::files::in_place;
 use crate::files::input;
 use crate::files::paths::{are_same, open_sink};
+use crate::files::standard::StandardOutput;
 use crate::process::failure::Failure;
 use crate::process::messages;
 use crate::process::temporary::Temporary;
@@ -87,6 +88,7 @@ pub fn write_image(
 /// reported.
 pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
     match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(Failure::cannot_write(path, &error)),
         _ => Ok(()),
     }
@@ -139,11 +141,28 @@ pub fn refuse_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fai
 
 /// Refuses to replace a file that the model was read from, whatever its name here. `what` is what would replace it.
 pub fn refuse_source_by(path: &Path, what: &str, scene: &Path, model: &Model) -> Result<(), Failure> {
-    let refused = |source| {
-        Err(Failure::usage(format!("`{}` is {source}, which {what} would replace", text::shown(path)))
-            .help("name another file with `-o FILE`"))
-    };
-    source(path, scene, model).map_or(Ok(()), refused)
+    source(path, scene, model).map_or(Ok(()), |source| Err(would_replace(path, &source, what)))
+}
+
+/// Refuses to replace a file that is read, whatever its name here. `source` is what is read from it, and `what` is what
+/// would replace it.
+pub fn refuse_input(path: &Path, input: &Path, source: &str, what: &str) -> Result<(), Failure> {
+    if is_input(input, path) { Err(would_replace(path, source, what)) } else { Ok(()) }
+}
+
+fn would_replace(path: &Path, source: &str, what: &str) -> Failure {
+    Failure::usage(format!("`{}` is {source}, which {what} would replace", text::shown(path)))
+        .help("name another file with `-o FILE`")
+}
+
+/// Tells whether a path leads to the file of an input, which may be standard input.
+fn is_input(input: &Path, path: &Path) -> bool {
+    if input::is_standard(input) {
+        let is_stdin = || Ok::<_, io::Error>(Handle::from_path(path)? == Handle::stdin()?);
+        path.is_file() && is_stdin().unwrap_or(false)
+    } else {
+        are_same(input, path)
+    }
 }
 
 /// Says what a file is to the model that was read from it, whatever path names it; `None` for another file.
@@ -151,20 +170,12 @@ pub fn source(path: &Path, scene: &Path, model: &Model) -> Option<String> {
     if !path.exists() {
         return None;
     }
-    let is_scene = || {
-        if input::is_standard(scene) {
-            let is_stdin = || Ok::<_, io::Error>(Handle::from_path(path)? == Handle::stdin()?);
-            path.is_file() && is_stdin().unwrap_or(false)
-        } else {
-            are_same(scene, path)
-        }
-    };
     let is_source = |texture: &Item<Arc<Texture>>| are_same(texture.value.path(), path);
     let is_read = |record: &&Record| {
         let args = record.args();
         args.files().any(|file| are_same(&args.setting.folder.join(file), path))
     };
-    if is_scene() {
+    if is_input(scene, path) {
         return Some("the scene".to_owned());
     }
     if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
@@ -238,7 +249,7 @@ impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let sent = match self {
             Self::File(file, _) => return file.file().write(bytes),
-            Self::Standard => io::stdout().write(bytes)?,
+            Self::Standard => StandardOutput.write(bytes)?,
             Self::Special(file) => file.write(bytes)?,
         };
         SENT.fetch_add(sent as u64, Ordering::Relaxed);
@@ -247,7 +258,7 @@ impl Write for Output {
 
     fn flush(&mut self) -> io::Result<()> {
         match self {
-            Self::Standard => io::stdout().flush(),
+            Self::Standard => StandardOutput.flush(),
             Self::Special(file) => file.flush(),
             Self::File(file, _) => file.file().flush(),
         }

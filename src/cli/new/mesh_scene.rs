@@ -6,6 +6,7 @@ use glam::DVec3;
 use std::path::{Path, PathBuf};
 use tabray_core::scene::value::Datum;
 use tabray_core::shapes::mesh::read::Wanted;
+use tabray_core::shapes::mesh::read::staging::{Lamp, Viewer};
 use tabray_core::text::{shortest, shown};
 use tabray_core::world::sensor::Sensor;
 use tabray_lang::dump;
@@ -44,7 +45,7 @@ pub fn text(registry: &Registry, file: &Path, scene: &Path, syntax: Syntax) -> R
 
 fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
     let wanted = Wanted { normals: true, materials: Some(Sensor::default().display()) };
-    let surface = mesh::read(file, wanted)?;
+    let (surface, staging) = mesh::read(file, wanted)?;
     let [low, high] = surface.bounds();
     let own = [
         ("    normals     file\n", surface.is_smooth()),
@@ -64,27 +65,109 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
     let half = half * scale;
     let translation = DVec3::new(0.0, half.y, 0.0) - middle * scale;
     let target = DVec3::new(0.0, half.y, 0.0);
-    let distance = distance(half);
-    let at = |toward: DVec3, distance: f64| point(target + distance * toward.normalize());
+    let placed = |at: DVec3| scale * turned(at) + translation;
+    let camera = match &staging.viewer {
+        Some(viewer) => own_camera(viewer, &placed, target),
+        None => include_str!("templates/mesh_camera.ray")
+            .replace("@POSITION@", &point(target + distance(half) * VIEWER.normalize()))
+            .replace("@TARGET@", &point(target)),
+    };
+    let lamps = if staging.lamps.is_empty() {
+        let at = |toward: DVec3| point(target + FAR * toward.normalize());
+        include_str!("templates/mesh_lamps.ray")
+            .replace("@LAMP_AT@", &at(LAMP))
+            .replace("@FILL_AT@", &at(FILL))
+    } else {
+        own_lamps(&staging.lamps, &placed, scale, target)
+    };
+    // A floor would hide what a viewer of the file's own may show below the mesh.
+    let floor = if staging.viewer.is_some() { "" } else { include_str!("templates/mesh_floor.ray") };
     let scale = shortest(scale);
     let size = (high - low).to_array().map(mesh::six_digits).join(" x ");
     let words = [
         ("FILE", Syntax::Notes.values(&Datum::Word(relative(file, scene))).concat()),
         ("SIZE", size),
-        ("POSITION", at(VIEWER, distance)),
-        ("TARGET", point(target)),
+        ("CAMERA", camera),
+        ("FLOOR", floor.to_owned()),
+        ("LAMPS", lamps),
         ("SCALE", [scale.as_str(); 3].join(" ")),
         ("ROTATION", if is_upright { "0 0 0" } else { "-90 0 0" }.to_owned()),
         ("OWN", own),
         ("UP", if is_upright { "y" } else { "z" }.to_owned()),
         ("TRANSLATION", point(translation)),
-        ("LAMP_AT", at(LAMP, FAR)),
-        ("FILL_AT", at(FILL, FAR)),
     ];
     let template = include_str!("templates/mesh.ray");
     Ok(words
         .iter()
         .fold(template.to_owned(), |text, (word, value)| text.replace(&format!("@{word}@"), value)))
+}
+
+/// Writes the viewer of a file. `placed` leads from its coordinates to those of the scene, where `middle` is the middle
+/// of the mesh.
+fn own_camera(viewer: &Viewer, placed: &dyn Fn(DVec3) -> DVec3, middle: DVec3) -> String {
+    const WIDTH: f64 = 480.0;
+    let aspect = viewer.aspect.unwrap_or(4.0 / 3.0);
+    let height = (WIDTH / aspect).round().max(1.0);
+    let [position, target] = {
+        let position = placed(viewer.position);
+        // Beside the middle of the mesh, as the direction alone tells nothing of the distance.
+        let away = (middle - position).dot(viewer.forward).max(1.0);
+        [position, position + away * viewer.forward]
+    };
+    let angle = 2.0 * libm::atan(aspect * viewer.tangent).to_degrees();
+    format!(
+        "# The first camera of the file.
+look_at eye
+{{
+    pixeldim {WIDTH} {height}
+    position {}
+    target   {}
+    up       {}
+    angle    {}               # across the width of the image, in degrees
+    samples  16
+}}
+",
+        point(position),
+        point(target),
+        point(viewer.up.normalize_or(DVec3::Y)),
+        shortest(rounded_to_four_digits(angle))
+    )
+}
+
+/// Writes the lights of a file, the strongest at the middle of the mesh with an emissivity of 1.
+fn own_lamps(lamps: &[Lamp], placed: &dyn Fn(DVec3) -> DVec3, scale: f64, middle: DVec3) -> String {
+    // Candela over the square of metres, which are the file's units, is lux.
+    let away = |lamp: &Lamp| lamp.position.map(|at| placed(at).distance(middle).max(1e-3));
+    let lux = |lamp: &Lamp| lamp.light / away(lamp).map_or(1.0, |away| (away / scale).powi(2));
+    let strongest = lamps.iter().map(|lamp| lux(lamp).max_element()).fold(0.0, f64::max);
+    let unit = if strongest > 0.0 { strongest } else { 1.0 };
+    let mut text =
+        "# The lights of the file, the strongest with an emissivity of 1 at the mesh.\n".to_owned();
+    for (number, lamp) in (1..).zip(lamps) {
+        let emissivity = point(lux(lamp) / unit);
+        let (position, forward) = (lamp.position.map(placed), lamp.forward.unwrap_or(DVec3::NEG_Y));
+        text += &match (position, away(lamp)) {
+            (Some(position), Some(away)) => {
+                let (kind, beam) = match lamp.edge {
+                    Some(edge) => {
+                        let edge = shortest(rounded_to_four_digits(edge.clamp(0.01, 180.0)));
+                        let axis = point(position + away * forward);
+                        ("spotlight", format!("    point      {axis}\n    theta      {edge}\n"))
+                    }
+                    None => ("light", String::new()),
+                };
+                let (location, away) = (point(position), shortest(rounded_to_four_digits(away)));
+                format!(
+                    "{kind} lamp{number}\n{{\n    location   {location}\n    emissivity {emissivity}\n    falloff    square\n    at         {away}\n{beam}}}\n"
+                )
+            }
+            _ => format!(
+                "sun lamp{number}\n{{\n    direction  {}\n    emissivity {emissivity}\n}}\n",
+                point(-forward)
+            ),
+        };
+    }
+    text
 }
 
 /// Returns how far from the middle the viewer must be to see a box with these half sides.

@@ -27,7 +27,7 @@ pub struct Args {
     /// its first column, from 0 at the left, and Y its first row, from 0 at the bottom
     #[arg(long, value_name = "X,Y,W,H", conflicts_with = "aov", value_parser = crop, allow_hyphen_values = true)]
     crop: Option<[i64; 4]>,
-    /// Replace an image of a different size, which `--quick`, `--size` and `--crop` otherwise refuse
+    /// Replace a larger image, which `--quick`, `--size` and `--crop` otherwise refuse
     #[arg(long)]
     force: bool,
 }
@@ -87,9 +87,9 @@ impl Args {
         }
     }
 
-    /// Refuses to let a preview, an image of a size asked for or a part replace an image of another size, such as the one
+    /// Refuses to let a preview, an image of a size asked for or a part replace an image that is larger, such as the one
     /// that took an hour. One with a checkpoint beside it is not finished.
-    pub fn refuse_other_size(&self, path: &Path, region: &Region) -> Result<(), Failure> {
+    pub fn refuse_larger(&self, path: &Path, region: &Region) -> Result<(), Failure> {
         let is_asked_for = self.quick || self.size.is_some() || self.crop.is_some();
         let mut checkpoint = path.as_os_str().to_owned();
         checkpoint.push(".checkpoint");
@@ -101,7 +101,7 @@ impl Args {
             return Ok(());
         };
         let [new_width, new_height] = region.size();
-        if [width as usize, height as usize] == [new_width, new_height] {
+        if width as usize <= new_width && height as usize <= new_height {
             return Ok(());
         }
         let mut beside = OsString::from(if self.quick { "quick" } else { "other" });

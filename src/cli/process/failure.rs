@@ -1,5 +1,6 @@
 //! The end of a command: its output, or a failure.
 
+use crate::files::standard::StandardOutput;
 use crate::process::{messages, progress, temporary};
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -154,7 +155,7 @@ pub fn print_scene(text: &str) -> Result<(), Failure> {
 }
 
 fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
-    match io::stdout().write_all(bytes).and_then(|()| io::stdout().flush()) {
+    match StandardOutput.write_all(bytes).and_then(|()| StandardOutput.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::cannot_write(Path::new("-"), &error))
         }

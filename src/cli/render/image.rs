@@ -109,7 +109,7 @@ impl ImageRender<'_> {
     /// Renders the image and the images beside it into their files.
     fn whole(self, mut stats: Stats) -> Result<(), Failure> {
         let Self { registry, args, stop, path, format, source, memory, model, region, .. } = self;
-        args.size.refuse_other_size(path, &region)?;
+        args.size.refuse_larger(path, &region)?;
         let output = Output::open(path)?;
         let beside = aov::open(&model, &args.aov, &args.main(path), &output)?;
         // The text of a large scene takes as much memory as its model.

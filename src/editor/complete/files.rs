@@ -2,6 +2,7 @@
 
 use super::proposal::{Completion, CompletionContext, CompletionKind, plain};
 use std::path::Path;
+use tabray_core::files;
 
 /// The maximum number of proposed files of a folder.
 const MAX_FILES: usize = 1000;
@@ -18,7 +19,7 @@ impl CompletionContext<'_> {
         let place = self.at - prefix.len()..self.at;
         let folder =
             if typed.starts_with('/') { Path::new("/").join(folder) } else { self.folder.join(folder) };
-        let entries = folder.read_dir().ok().into_iter().flatten().filter_map(Result::ok).take(MAX_FILES);
+        let entries = files::read_dir(&folder).into_iter().flatten().filter_map(Result::ok).take(MAX_FILES);
         let mut names: Vec<_> = entries
             .filter_map(|entry| Some((entry.file_name().into_string().ok()?, entry.path().is_dir())))
             .filter(|(name, _)| !name.starts_with('.'))

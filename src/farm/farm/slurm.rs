@@ -1,6 +1,7 @@
 //! The scripts of a Slurm job array.
 
 use super::job::{Job, word};
+use std::io;
 use std::path::Path;
 use tabray_cli::files::output;
 use tabray_cli::process::failure::{Failure, print};
@@ -9,6 +10,10 @@ use tabray_core::text;
 /// Writes the scripts, and prints the command that submits them.
 pub fn write(job: &Job, program: &str) -> Result<(), Failure> {
     let folder = output::append_to_path(&job.path, ".slurm");
+    // The parts would find no folder for their image.
+    if job.path.parent().is_some_and(|parent| !parent.as_os_str().is_empty() && !parent.is_dir()) {
+        return Err(Failure::cannot_write(&job.path, &io::ErrorKind::NotFound.into()));
+    }
     let [render, merge] = ["render.sbatch", "merge.sbatch"].map(|name| folder.join(name));
     let words = [word(&render)?, word(&merge)?];
     let [render_text, merge_text] = [render_text(job, program, &folder)?, merge_text(job, program, &folder)?];

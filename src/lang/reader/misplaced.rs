@@ -1,6 +1,7 @@
 //! Guesses of the intended file for a name that does not exist: one with another extension, or in a nearby folder.
 
 use std::path::{Component, Path, PathBuf};
+use tabray_core::files;
 use tabray_core::text::{nearest_file, shown};
 
 /// The extensions of supported images.
@@ -14,7 +15,7 @@ const FILES: usize = 4096;
 /// Returns the name of the image that a scene in `folder` probably meant by a name that does not exist.
 pub fn image(folder: &Path, written: &str) -> Option<String> {
     let slashes = written.replace('\\', "/");
-    if slashes != written && folder.join(&slashes).is_file() {
+    if slashes != written && files::is_file(&folder.join(&slashes)) {
         return Some(slashes);
     }
     let written = Path::new(written);
@@ -22,7 +23,8 @@ pub fn image(folder: &Path, written: &str) -> Option<String> {
     let own = written.parent().unwrap_or(Path::new(""));
     let same = |place: &Path| like(&folder.join(place), written).map(|name| place.join(name));
     let places = places(folder, own);
-    let exact = || places.iter().map(|place| place.join(name)).find(|path| folder.join(path).is_file());
+    let exact =
+        || places.iter().map(|place| place.join(name)).find(|path| files::is_file(&folder.join(path)));
     let found = same(own).or_else(exact).or_else(|| places.iter().find_map(|place| same(place)));
     let found = found.or_else(|| nearest_file(&folder.join(written)).map(|near| own.join(near)));
     found.map(shown)
@@ -41,7 +43,7 @@ fn places(folder: &Path, own: &Path) -> Vec<PathBuf> {
     }
     places.extend([PathBuf::new(), up.to_owned()]);
     for within in [Path::new(""), up] {
-        let entries = folder.join(within).read_dir().into_iter().flatten().take(FILES);
+        let entries = files::read_dir(&folder.join(within)).into_iter().flatten().take(FILES);
         let folders = entries.filter_map(Result::ok).filter(|entry| entry.path().is_dir());
         let mut folders: Vec<_> = folders.map(|folder| within.join(folder.file_name())).collect();
         // The order of a folder's entries is arbitrary.
@@ -55,8 +57,10 @@ fn places(folder: &Path, own: &Path) -> Vec<PathBuf> {
 /// Returns the name of an image in a folder with the same name except for its extension and letter case.
 fn like(folder: &Path, written: &Path) -> Option<String> {
     let stem = written.file_stem()?.to_str()?;
-    let entries = if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.read_dir().ok()?;
-    let names = entries.take(FILES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let names = files::read_dir(folder)
+        .ok()?
+        .take(FILES)
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let is_like = |name: &String| {
         let path = Path::new(name);
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();

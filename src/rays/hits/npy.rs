@@ -91,7 +91,8 @@ fn head(input: &mut dyn BufRead) -> io::Result<String> {
     let invalid = || io::Error::from(io::ErrorKind::InvalidData);
     let mut start = [0; 8];
     input.read_exact(&mut start)?;
-    if !start.starts_with(MAGIC) {
+    let is_known = matches!(start[6..], [1..=3, 0]);
+    if !(start.starts_with(MAGIC) && is_known) {
         return Err(invalid());
     }
     let mut length = [0; 4];

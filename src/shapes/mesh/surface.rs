@@ -128,6 +128,7 @@ impl Surface {
             mut attributes,
             mut remarks,
             files,
+            staging: _,
         } = model;
         let vertices = merge(vertices, &mut faces, placement);
         attributes.turn(|_| placement.is_mirrored());

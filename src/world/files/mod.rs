@@ -77,6 +77,21 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
+/// Lists a folder, in any order.
+///
+/// # Errors
+/// Returns the errors of the system, and an error where the folder is [outside](refuse_outside).
+pub fn read_dir(folder: &Path) -> io::Result<fs::ReadDir> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    refuse_outside(folder)?;
+    folder.read_dir()
+}
+
+/// Tells whether a path leads to a file, and not [outside](refuse_outside).
+pub fn is_file(path: &Path) -> bool {
+    refuse_outside(path).is_ok() && path.is_file()
+}
+
 fn refuse_other(kind: &Metadata) -> io::Result<()> {
     if kind.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());

@@ -10,6 +10,7 @@ use crate::reader::report::Report;
 use crate::reader::statement::Statement;
 use std::ops::Range;
 use std::path::Path;
+use tabray_core::files;
 use tabray_core::text::shortest;
 
 /// The width of the image, in pixels. The programs of the time took it from their command line.
@@ -204,7 +205,7 @@ impl<'a, 'r> Entities<'a, 'r> {
     fn texture(&mut self, found: &Found<'_>, report: &mut Report<'_>) -> Option<String> {
         let (file, place) = found.file.as_ref().filter(|_| found.code.drawn.is_none())?;
         let path = self.folder.join(file);
-        if !path.is_file() {
+        if !files::is_file(&path) {
             let message =
                 format!("there is no file `{file}`: this {} has its plain colours", found.code.name);
             report.add(

@@ -65,7 +65,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     interrupt::catch(InterruptAction::Exit("the rays were not finished"))?;
     let path = args.output.as_deref().unwrap_or(Path::new("-"));
     if args.output.is_some() {
-        output::refuse_source(path, &args.scene, &model)?;
+        output::refuse_source_by(path, "the rays", &args.scene, &model)?;
     }
     let wanted = args.count as usize;
     let rays = hard::rays(&args.threads.renderer()?, &Query::new(&model), wanted, args.seed);

@@ -90,7 +90,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             return Err(Failure::usage("the scene has no camera to show it").help(help));
         }
         output::refuse_source(picture, &args.scene, &model)?;
-        output::refuse_source(picture, path, &model)?;
+        output::refuse_input(picture, path, "the answers", "the image")?;
         Ok((picture, format, Output::open(picture)?))
     });
     let picture = picture.transpose()?;

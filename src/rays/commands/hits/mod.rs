@@ -164,8 +164,8 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     }
     let path = args.output.as_deref().unwrap_or(Path::new("-"));
     if args.output.is_some() {
-        output::refuse_source(path, &args.scene, &model)?;
-        output::refuse_source(path, rays, &model)?;
+        output::refuse_source_by(path, "the answers", &args.scene, &model)?;
+        output::refuse_input(path, rays, "the rays", "the answers")?;
     }
     let cannot = |error: &io::Error| Failure::cannot_write(path, error);
     let is_text = args.output.is_none() && format != AnswerFormat::Npy;

@@ -13,6 +13,7 @@ mod ply_bytes;
 mod ply_header;
 mod ply_text;
 mod polygons;
+pub mod staging;
 mod stl;
 #[cfg(test)]
 mod tests;

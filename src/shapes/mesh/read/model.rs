@@ -2,6 +2,7 @@
 
 use super::at_corners::Attributes;
 use super::finish::Finish;
+use super::staging::Staging;
 use bytesize::ByteSize;
 use glam::DVec3;
 use std::fmt;
@@ -35,6 +36,8 @@ pub struct Model {
     pub remarks: Vec<Remark>,
     /// The files named in this one, whether they exist or not.
     pub files: Vec<PathBuf>,
+    /// From where the file is seen, and by which lights.
+    pub staging: Staging,
 }
 
 impl Model {

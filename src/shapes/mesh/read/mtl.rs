@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
-use tabray_world::files::held::SceneFile;
+use tabray_world::files::{self, held::SceneFile};
 use tabray_world::material::Rgb;
 use tabray_world::text;
 use tabray_world::texture::{CUTOFF, Texture};
@@ -61,7 +61,7 @@ pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path,
             // A file that is not at its path is looked for beside the model.
             let (whole, beside) =
                 (folder.join(&name), folder.join(Path::new(&name).file_name().unwrap_or_default()));
-            let path = if !whole.is_file() && beside.is_file() { beside } else { whole };
+            let path = if !files::is_file(&whole) && files::is_file(&beside) { beside } else { whole };
             model.files.push(path.clone());
             match text_of(&path) {
                 Ok(bytes) => {
@@ -106,8 +106,10 @@ fn named(names: &[u8], folder: &Path) -> Vec<String> {
     let (mut rest, mut found) = (&words[..], Vec::new());
     while !rest.is_empty() {
         let joined = (2..=rest.len().min(MAX_WORDS)).rev().map(|count| (count, rest[..count].join(" ")));
-        let (count, name) =
-            joined.into_iter().find(|(_, name)| folder.join(name).is_file()).unwrap_or((1, rest[0].clone()));
+        let (count, name) = joined
+            .into_iter()
+            .find(|(_, name)| files::is_file(&folder.join(name)))
+            .unwrap_or((1, rest[0].clone()));
         rest = &rest[count..];
         found.push(name);
     }

@@ -4,6 +4,7 @@ use super::model::{MemoryBudget, Model, Remark};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tabray_world::files;
 use tabray_world::text;
 use tabray_world::texture::Texture;
 
@@ -44,7 +45,7 @@ impl<'f> Textures<'f> {
         let last = Path::new(&name).file_name().unwrap_or_default();
         let names = [Path::new(&name), Path::new(last)];
         let paths = names.into_iter().flat_map(|name| [self.folder.join(name), self.of_model.join(name)]);
-        let path = paths.into_iter().find(|path| path.is_file()).unwrap_or(self.folder.join(&name));
+        let path = paths.into_iter().find(|path| files::is_file(path)).unwrap_or(self.folder.join(&name));
         if let Some(known) = self.known.get(&path) {
             return known.clone();
         }

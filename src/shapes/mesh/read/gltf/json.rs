@@ -19,6 +19,8 @@ pub struct Gltf {
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
     pub images: Vec<Image>,
+    pub cameras: Vec<Camera>,
+    pub extensions: Extensions,
 }
 
 #[derive(Default, Deserialize)]
@@ -38,11 +40,90 @@ pub struct Scene {
 pub struct Node {
     pub children: Vec<usize>,
     pub mesh: Option<usize>,
+    pub camera: Option<usize>,
+    pub extensions: NodeExtensions,
     pub skin: Option<usize>,
     pub matrix: Option<[f64; 16]>,
     pub translation: Option<[f64; 3]>,
     pub rotation: Option<[f64; 4]>,
     pub scale: Option<[f64; 3]>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct NodeExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub light: Option<NodeLight>,
+}
+
+#[derive(Deserialize)]
+pub struct NodeLight {
+    pub light: usize,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Extensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub lights: Lights,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Lights {
+    pub lights: Vec<Light>,
+}
+
+#[derive(Deserialize)]
+#[serde(default)]
+pub struct Light {
+    #[serde(rename = "type")]
+    pub kind: LightKind,
+    pub color: [f64; 3],
+    pub intensity: f64,
+    pub spot: Option<Spot>,
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Self { kind: LightKind::Point, color: [1.0; 3], intensity: 1.0, spot: None }
+    }
+}
+
+#[derive(Deserialize, PartialEq)]
+#[serde(rename_all = "lowercase")]
+pub enum LightKind {
+    Directional,
+    Spot,
+    #[serde(other)]
+    Point,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Spot {
+    /// In radians.
+    pub outer_cone_angle: f64,
+}
+
+impl Default for Spot {
+    fn default() -> Self {
+        Self { outer_cone_angle: std::f64::consts::FRAC_PI_4 }
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Camera {
+    pub perspective: Option<Perspective>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Perspective {
+    /// In radians.
+    pub yfov: f64,
+    pub aspect_ratio: Option<f64>,
 }
 
 #[derive(Default, Deserialize)]

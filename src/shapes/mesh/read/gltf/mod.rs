@@ -1,9 +1,11 @@
 //! glTF 2.0, as JSON and in the binary container GLB. Read are the triangles of the file's default scene, where its
-//! nodes place them, and the materials. Skins, morph targets, animations, cameras and lights are not read.
+//! nodes place them, the materials, and for a new scene the first camera and the lights. Skins, morph targets and
+//! animations are not read.
 
 mod buffers;
 mod json;
 mod looks;
+mod staging;
 
 use super::at_corners::{AtCorners, NO_VALUE};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, Remark, shown};
@@ -62,6 +64,9 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
             format!("it is a GLB of version {version}, and only version 2 is read"),
         ));
     }
+    if word(8).is_none_or(|length| length as usize > bytes.len()) {
+        return Err(early());
+    }
     let chunk = |at: usize| {
         let (length, kind) = (word(at)? as usize, word(at + 4)?);
         let end = at.checked_add(8)?.checked_add(length)?;
@@ -99,6 +104,7 @@ fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) 
     let mut reading = Reading { source, model: Model::default(), left_out: 0, posed: 0 };
     for (node, placement) in placed(json)? {
         reading.add(node, placement)?;
+        staging::add(&mut reading.model.staging, json, node, placement);
     }
     let Reading { mut model, left_out, posed, .. } = reading;
     model.attributes.drop_unused();
