@@ -29,10 +29,10 @@ use tabray_tools::sampling::right::{Right, SCRAMBLES};
 /// bright must take a large part of a pixel, or of many pixels, to matter, and then samples see it.
 const BRIGHT: [f64; 2] = [4.0, 64.0];
 
-/// The part of the squares that are looked at first, one in this many, and the part of their pixels, one in this many,
-/// from which on small things may be everywhere.
-const TRIED: usize = 16;
-const TOO_MANY: usize = 4;
+/// The least number of squares that are looked at first, and the part of them, one in this many; and the part of their
+/// pixels, one in this many, from which on small things may be everywhere.
+const TRIED: usize = 32;
+const TOO_MANY: usize = 2;
 
 /// The width in pixels of the squares that are looked at first.
 const SQUARE: usize = 8;
@@ -121,7 +121,7 @@ impl SmallThings {
             squares[range].iter().for_each(|square| bounds.find(*square, SQUARE, &mut pixels));
             pixels
         };
-        let first = squares.len() / TRIED;
+        let first = squares.len().min(TRIED.max(squares.len() / TRIED));
         let mut whole = threads.run(|| parallel::map_ranges(first, 2, &part));
         if !is_certain && TOO_MANY * whole.len() > first * SQUARE * SQUARE {
             return found;

@@ -19,6 +19,11 @@ const HIGHEST: u32 = 1024;
 const LOOKED_AT: (usize, [usize; 2]) = (8, [1 << 11, 1 << 17]);
 const DRAWN: (usize, [usize; 2]) = (32, [256, 2048]);
 
+/// The part of the greatest error below which an error is likely to be kept, and worth more pixels rather than more samples,
+/// up to this many times as many.
+const LIKELY: f64 = 0.8;
+const MORE: usize = 8;
+
 /// The least number of samples of each of the two images that count as right. Pixels that take more are compared with as
 /// many.
 const RIGHT: u32 = 32;
@@ -53,9 +58,13 @@ pub fn raise(plan: &mut Plan, threads: &Renderer, adaptive: Adaptive, most: f64)
         let pixels = colours.iter().zip(&rights);
         let errors: Vec<_> = pixels.map(|(colour, right)| PixelError::new(*colour, *right)).collect();
         let error = drawn.rms(&errors);
-        if error.most <= most || least * FACTOR > HIGHEST.min(adaptive.most / 2) {
+        let is_open = error.most > most;
+        if is_open && error.mean <= LIKELY * most && errors.len() < strata.count().min(MORE * wanted) {
+            drawn.draw(2 * errors.len());
+        } else if is_open && least * FACTOR <= HIGHEST.min(adaptive.most / 2) {
+            least *= FACTOR;
+        } else {
             return Raised { least, error, pixels: errors.len() };
         }
-        least *= FACTOR;
     }
 }
