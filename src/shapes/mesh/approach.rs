@@ -11,6 +11,10 @@ use tabray_world::geometry::ray::{Ray, RayError};
 /// The maximum distance, as a multiple of a mesh's size, at which `f64` arithmetic finds the faces quickly.
 pub(super) const FAR: f64 = (1_u64 << 30) as f64;
 
+/// More steps than lead from the largest numbers to the smallest, as each leaves less than 2^-50 of the way. The length of
+/// the way is infinite above 1e154, and never halves.
+const MAX_STEPS: usize = 64;
+
 /// A ray that starts closer to a mesh than the original ray. From a distance that is large for their size, `f64`
 /// arithmetic cannot tell faces apart.
 pub(super) struct Approach {
@@ -52,7 +56,7 @@ impl Approach {
             }
             let before = left;
             left = (middle - at).length();
-            if before <= FAR * size || left > 0.5 * before {
+            if before <= FAR * size || left > 0.5 * before || steps.len() == MAX_STEPS {
                 break;
             }
         }
