@@ -102,11 +102,15 @@ where
     dyn Patches: PatchesIn<F>,
 {
     pub fn first(&self) -> Found<F> {
-        // All parts would be tried.
-        if let Some(entry) =
-            self.shape.tree.bounds().and_then(|all| self.line.blurred_entry(all.low, all.high))
-        {
-            return Found { hit: None, undecided: Some(entry), narrow: None };
+        // All parts would be tried: the numbers of such a line are too large for the box test in `f64`.
+        if let Some(Aabb { low, high }) = self.shape.tree.bounds() {
+            let nothing = Found { hit: None, undecided: None, narrow: None };
+            if self.line.clip(low, high).is_none() {
+                return nothing;
+            }
+            if let Some(entry) = self.line.blurred_entry(low, high) {
+                return Found { undecided: Some(entry), ..nothing };
+            }
         }
         let (mut waiting, mut number) = (BinaryHeap::new(), 0);
         // Tests in `f64` are faster, and come first.
