@@ -9,8 +9,9 @@ use std::time::Duration;
 use tabray::query::{Query, QueryRay};
 use tabray::tools::clock;
 
-/// The most CPU time for a ray, traced and proven. A ray that takes longer is tried thrice, and its least time counts.
-const MOST: Duration = Duration::from_millis(100);
+/// The most CPU time for a ray, traced and proven twice. A ray that takes longer is tried thrice, and its least time
+/// counts. Parametric surfaces need most, where products overflow in `f64` and 237 bits try all their parts.
+const MOST: Duration = Duration::from_secs(1);
 
 /// The number of rays for each entity type's scene, unless the environment's FAR_RAYS says another.
 const RAYS: usize = 1000;

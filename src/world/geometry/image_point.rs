@@ -26,9 +26,10 @@ impl<N: Scalar> ImagePoint<N> {
     /// the right edge of the image, half a pixel beyond the centres of the outermost pixels, are at -1 and 1.
     #[inline(always)]
     pub fn from_middle(&self) -> [N; 2] {
-        let twice = |side: usize| self.at[side] + self.at[side] - N::constant((self.pixels[side] - 1) as f64);
-        let width = N::constant(self.pixels[0] as f64);
-        [twice(0) / width, twice(1) / width]
+        // In the middle, this difference is 0 for intervals, too: many scenes are symmetric there.
+        let off = |side: usize| self.at[side] - N::constant(0.5 * (self.pixels[side] - 1) as f64);
+        let half = N::constant(0.5 * self.pixels[0] as f64);
+        [off(0) / half, off(1) / half]
     }
 }
 
