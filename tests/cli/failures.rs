@@ -92,6 +92,32 @@ fn an_image_whose_reader_is_gone_is_a_failure() {
 }
 
 #[test]
+fn text_whose_reader_is_gone_is_no_failure() {
+    let folder = workplace();
+    for args in [&["hard", "ball.ray", "-n", "20000"][..], &["hits", "ball.ray", "--from-camera"]] {
+        let mut command = after("", &folder, args);
+        let mut program = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+        drop(program.stdout.take());
+        let output = program.wait_with_output().expect("it ends");
+        assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(0), ""));
+    }
+}
+
+#[test]
+fn standard_output_that_is_closed_is_a_failure() {
+    let folder = workplace();
+    let said = "error: cannot write to standard output: it is closed\n";
+    for args in [
+        &["dump", "ball.ray"][..],
+        &["hits", "ball.ray", "--from-camera"],
+        &["probe", "ball.ray", "3", "3"],
+        &["render", "ball.ray", "-o", "-"],
+    ] {
+        assert_eq!(outcome(&mut after("exec >&-", &folder, args)), (1, said.to_owned()), "{args:?}");
+    }
+}
+
+#[test]
 fn an_image_does_not_replace_what_it_is_made_from() {
     let folder = workplace();
     let at = |name: &str| folder.path().join(name);

@@ -95,7 +95,7 @@ impl Hittable for Ball {
             }
             // As a search without a bound, which most rays end soon.
             Fault::Slow if ray.dir.x > 0.9 => {
-                let lost: f64 = (0..2_000_000).map(|number| libm::sin(f64::from(number))).sum();
+                let lost: f64 = (0..5_000_000).map(|number| libm::sin(f64::from(number))).sum();
                 if lost.is_nan() { MISS } else { first }
             }
             _ => first,

@@ -84,11 +84,10 @@ pub fn write_image(
     Ok(())
 }
 
-/// Moves an image to its path, if it was written without an error. If the reader of a pipe has closed it, nothing is
-/// reported.
+/// Moves a file to its path, if it was written without an error. A pipe that its reader has closed is an error: what is
+/// there is no whole file.
 pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
     match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(Failure::cannot_write(path, &error)),
         _ => Ok(()),
     }

@@ -182,7 +182,7 @@ impl fmt::Display for Promise {
             Self::HitIsTouched => "`is_on_surface` is true at each point where a ray hits the shape",
             Self::HitIsAccurate => "a hit from far away is where one from near is",
             Self::UvIsWithin => "the coordinates u and v are from 0 to 1",
-            Self::RayIsQuick => "`distance` takes at most as long as 400,000 sines",
+            Self::RayIsQuick => "`distance` takes at most as long as a million sines",
             Self::NormalIsUpright => "a normal is perpendicular to the surface",
             Self::NormalsAgree => "neighbouring normals point to the same side",
             Self::NormalsPointOut => "the normals of a convex shape point outward",

@@ -37,7 +37,7 @@ const GAP: f64 = 1e-2;
 const DRIFT: f64 = 1e-10;
 
 /// The number of sines that take as long as a ray may.
-const SINES: u32 = 400_000;
+const SINES: u32 = 1_000_000;
 
 /// A duration that is shorter than that of these sines.
 const QUICK: Duration = Duration::from_millis(1);

@@ -4,7 +4,7 @@ use super::files::{To, of_name};
 use super::model;
 use crate::hits::answers::AnswerFormat;
 use crate::hits::hard;
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tabray_cli::files::output::{self, Output};
 use tabray_cli::options::number::whole;
@@ -76,7 +76,11 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let is_text = args.output.is_none() && format != AnswerFormat::Npy;
     let mut out = BufWriter::new(if is_text { Output::Standard } else { Output::open(path)? });
     let written = hard::write(format, &rays, &mut out).and_then(|()| out.flush());
-    output::finished(path, written, out)?;
+    match written {
+        // A reader that closes the pipe is no failure.
+        Err(error) if is_text && error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+        written => output::finished(path, written, out)?,
+    }
     if rays.len() < wanted {
         messages::warning(&format!("only {} were found", count(rays.len(), "hard ray")), None);
     }
