@@ -5,6 +5,7 @@ use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::fs;
+use std::slice;
 use std::time::Duration;
 use tabray::query::{Query, QueryRay};
 use tabray::tools::clock;
@@ -35,9 +36,9 @@ fn rays_of_any_numbers_have_an_answer_soon() {
             let (ray, end) = draw(&mut numbers);
             let time = || {
                 let start = clock::now();
-                let traced = query.traced(&[ray.clone()]);
-                let proven = query.proven(&[ray.clone()], false);
-                let within = query.occluded(&[ray.clone()], &[end]);
+                let traced = query.traced(slice::from_ref(&ray));
+                let proven = query.proven(slice::from_ref(&ray), false);
+                let within = query.occluded(slice::from_ref(&ray), &[end]);
                 assert_eq!([traced.len(), proven.len(), within.len()], [1; 3], "{name}: {ray:?}");
                 clock::now() - start
             };

@@ -138,7 +138,7 @@ look_at eye
 fn own_lamps(lamps: &[Lamp], placed: &dyn Fn(DVec3) -> DVec3, scale: f64, middle: DVec3) -> String {
     // Candela over the square of metres, which are the file's units, is lux.
     let away = |lamp: &Lamp| lamp.position.map(|at| placed(at).distance(middle).max(1e-3));
-    let lux = |lamp: &Lamp| lamp.light / away(lamp).map_or(1.0, |away| (away / scale).powi(2));
+    let lux = |lamp: &Lamp| lamp.light / away(lamp).map_or(1.0, |away| away * away / (scale * scale));
     let strongest = lamps.iter().map(|lamp| lux(lamp).max_element()).fold(0.0, f64::max);
     let unit = if strongest > 0.0 { strongest } else { 1.0 };
     let mut text =

@@ -35,7 +35,8 @@ impl RayTrial<'_> {
         let normal = self.shape.normal(at);
         let shading = self.shape.shading_normal(at, normal);
         for (what, normal) in [("normal", normal), ("shading normal", shading)] {
-            if !((normal.length() - 1.0).abs() <= 1e-9) {
+            let is_unit = (normal.length() - 1.0).abs() <= 1e-9;
+            if !is_unit {
                 let found = format!("at {at} the {what} is {normal}, of length {}", normal.length());
                 return Err(Promise::NormalIsUnit.fault(found));
             }
