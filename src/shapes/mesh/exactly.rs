@@ -75,7 +75,7 @@ impl Surface {
     ) -> Option<(HitEnclosure<F>, usize)> {
         let crossings = self.exact_crossings::<F>(line, true)?;
         let Some((at, here)) = crossings.places().next() else { return Some((HitEnclosure::Misses, 0)) };
-        let hit = HitEnclosure::Hits(self.place::<A, F>(here[0].1, line, at));
+        let hit = HitEnclosure::Hits(F::narrow(at.into()));
         if let [(_, face)] = here {
             return Some((hit, *face));
         }

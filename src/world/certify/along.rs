@@ -22,7 +22,7 @@ pub(super) struct Budget {
 pub(super) const COARSE: Budget = Budget { operations: 20_000, wild: 4, pieces: 32..=2000 };
 
 /// The budget with 237 bits, where an operation takes as long as a hundred. Those rays took fewer than 64.
-pub(super) const FINE: Budget = Budget { operations: 2_000, wild: 1, pieces: 16..=128 };
+pub(super) const FINE: Budget = Budget { operations: 1_600, wild: 1, pieces: 16..=128 };
 
 impl Budget {
     /// Returns the number of pieces after which a search is given up.
