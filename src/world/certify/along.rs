@@ -10,25 +10,25 @@ use tabray_exact::interval::{Float, Interval};
 pub(super) struct Budget {
     /// The number of arithmetic operations, if each piece of the line is evaluated once.
     operations: usize,
-    /// A formula of a scene has one in so many of these operations. A curve that is turned about an axis has all, as
-    /// rounding may hide its rim.
-    wild: usize,
+    /// The same number for a formula of a scene. A curve that is turned about an axis has more, as rounding may hide its
+    /// rim.
+    of_formulas: usize,
     /// The numbers of pieces that are examined at least and at most, whatever their operations.
     pieces: RangeInclusive<usize>,
 }
 
 /// The budget with 53 bits. Of 768 rays for each of 180 wild formulas, those that were decided took fewer than
 /// 512 pieces.
-pub(super) const COARSE: Budget = Budget { operations: 20_000, wild: 4, pieces: 32..=2000 };
+pub(super) const COARSE: Budget = Budget { operations: 20_000, of_formulas: 5_000, pieces: 32..=2000 };
 
 /// The budget with 237 bits, where an operation takes as long as a hundred. Those rays took fewer than 64.
-pub(super) const FINE: Budget = Budget { operations: 1_600, wild: 1, pieces: 16..=128 };
+pub(super) const FINE: Budget = Budget { operations: 2_000, of_formulas: 1_600, pieces: 16..=128 };
 
 impl Budget {
     /// Returns the number of pieces after which a search is given up.
     pub fn pieces(&self, shape: &impl Equation) -> usize {
-        let part = if shape.field().is_some() { self.wild } else { 1 };
-        (self.operations / (part * shape.cost().max(1))).clamp(*self.pieces.start(), *self.pieces.end())
+        let operations = if shape.field().is_some() { self.of_formulas } else { self.operations };
+        (operations / shape.cost().max(1)).clamp(*self.pieces.start(), *self.pieces.end())
     }
 }
 
