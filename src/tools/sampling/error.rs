@@ -16,7 +16,8 @@ pub struct PixelError {
     /// The mean square of the channels' errors, estimated by the two right colours: its expectation is the true one,
     /// since their errors are independent. It may be below 0.
     pub square: f64,
-    /// The same, and more where a channel is white: clamping to white darkens the mean, in all images alike.
+    /// An estimate of the mean square that is larger than `square` where a channel is white: clamping to white darkens
+    /// the mean of samples, in all images alike.
     pub careful: f64,
     /// A bound on the mean square of the right colours' own errors, in expectation.
     pub spread: f64,
