@@ -162,7 +162,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         let program = cell.unwrap_or(&self.quick.program);
         let with = |registers: &mut [N]| {
             registers[..COUNT].copy_from_slice(&at);
-            self.quick.run_part(program, registers)
+            self.quick.run(program, registers)
         };
         let registers = program.registers;
         if registers <= FEW_REGISTERS {

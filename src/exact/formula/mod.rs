@@ -160,9 +160,9 @@ impl Formula {
     pub fn at<N: Scalar>(&self, y: N) -> N {
         // Setting up fewer registers is faster.
         if self.program.registers <= FEW_REGISTERS {
-            self.run(&mut [y; FEW_REGISTERS])
+            self.run(&self.program, &mut [y; FEW_REGISTERS])
         } else {
-            self.run(&mut [y; MAX_REGISTERS])
+            self.run(&self.program, &mut [y; MAX_REGISTERS])
         }
     }
 
@@ -171,14 +171,10 @@ impl Formula {
         self.steps.iter().map(|step| step.cost()).sum()
     }
 
-    /// Evaluates the formula in registers. The first ones hold the variables. One function per number type serves any
-    /// number of registers.
-    fn run<N: Scalar>(&self, registers: &mut [N]) -> N {
-        self.run_inline::<N, true>(&self.program, registers)
-    }
-
-    /// Evaluates a program of the formula, like [`run`](Self::run).
-    fn run_part<N: Scalar>(&self, program: &Program, registers: &mut [N]) -> N {
+    /// Evaluates a program of the formula in registers. The first ones hold the variables. One function per number type
+    /// serves any number of registers. Inlined into the equation of each shape, it would be megabytes of code.
+    #[inline(never)]
+    fn run<N: Scalar>(&self, program: &Program, registers: &mut [N]) -> N {
         self.run_inline::<N, true>(program, registers)
     }
 

@@ -89,7 +89,7 @@ fn faults_are_marked_where_they_are() {
 #[test]
 fn an_equation_is_the_difference_of_its_sides() {
     let ball = Formula::parse_in("x² + y² + Z² = 2Y + 1", SPACE).expect("an equation");
-    assert_eq!(ball.run(&mut [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]), 9.0);
+    assert_eq!(ball.run(&ball.program, &mut [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]), 9.0);
     assert!(Formula::parse_in("x = y = z", SPACE).is_err());
 }
 

@@ -47,7 +47,7 @@ impl Root {
 
 impl Whole {
     /// Returns the first wanted root from `low` to `high`. The polynomial 0 has none.
-    pub fn first_root(&self, low: f64, high: f64, is_wanted: impl Fn(&Root) -> bool) -> Option<Root> {
+    pub fn first_root(&self, low: f64, high: f64, is_wanted: &dyn Fn(&Root) -> bool) -> Option<Root> {
         if self.is_zero() || low > high || !(high - low).is_finite() {
             return None;
         }
@@ -257,7 +257,7 @@ mod tests {
     }
 
     fn first(of: &Whole, low: f64, high: f64) -> Option<(f64, Option<bool>)> {
-        of.first_root(low, high, |_| true).map(|root| (root.nearest(0.0), root.rises))
+        of.first_root(low, high, &|_| true).map(|root| (root.nearest(0.0), root.rises))
     }
 
     #[test]
@@ -269,7 +269,7 @@ mod tests {
         assert_eq!(first(&of, 2.0, 4.0), Some((2.0, Some(true))));
         assert_eq!(first(&of, 1.0, 2.0), Some((2.0, Some(true))));
         assert_eq!(first(&of, 2.5, 4.0), None);
-        let rising = of.first_root(0.0, 4.0, |root| root.rises == Some(true)).expect("a root");
+        let rising = of.first_root(0.0, 4.0, &|root| root.rises == Some(true)).expect("a root");
         assert_eq!(rising.bounds[0], Dyadic::from(2.0));
         assert_eq!(first(&product(&[(8, 3), (8, 3)], &[]), 0.0, 1.0), Some((0.375, None)));
         assert_eq!(first(&Whole::new(vec![IBig::ZERO]), 0.0, 1.0), None);
@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn a_root_that_two_polynomials_share_is_told() {
         let of = product(&[(3, 1), (7, 5), (7, 5)], &[&[5, 0, 1]]);
-        let all = [0.0, 0.5].map(|from| of.first_root(from, 1.0, |_| true).expect("a root"));
+        let all = [0.0, 0.5].map(|from| of.first_root(from, 1.0, &|_| true).expect("a root"));
         for (other, expected) in [
             (product(&[(7, 5), (1, -3)], &[]), [false, true]),
             (product(&[(3, 1), (3, 1), (3, 1), (7, 5), (9, 1)], &[&[1, 1, 1]]), [true, true]),
@@ -295,7 +295,7 @@ mod tests {
     fn clusters_are_told_apart_and_near_misses_are_none() {
         let one = 1_i64 << 61;
         let of = product(&[(one, one / 3), (one, one / 3 + 1), (one, one / 3 + 2)], &[]);
-        let root = of.first_root(0.0, 1.0, |root| root.rises == Some(false)).expect("a root");
+        let root = of.first_root(0.0, 1.0, &|root| root.rises == Some(false)).expect("a root");
         let third = Dyadic::new(IBig::from(one / 3 + 1), -61);
         assert!(root.wide().low <= third.wide().low && third.wide().high <= root.wide().high);
         assert!((root.wide().high - root.wide().low).to_f64() < 1e-36);

@@ -222,13 +222,21 @@ impl<T: Implicit> Member<'_, T> {
     }
 }
 
-/// Sorts rays along the axis on which they are farthest apart at the distance `t`.
+/// Sorts rays along the axis on which they are farthest apart at the distance `t`. They are few; the library's sort would
+/// be compiled for each shape, and is larger than the rest of this search.
 fn sort<T: Implicit>(members: &mut [Member<T>], t: f64) {
     let at = |member: &Member<T>| member.line.base + t * member.line.dir;
     let [low, high] =
         [DVec3::min, DVec3::max].map(|end| members.iter().map(at).reduce(end).unwrap_or_default());
     let axis = (high - low).max_position();
-    members.sort_unstable_by(|one, other| at(one)[axis].total_cmp(&at(other)[axis]));
+    for index in 1..members.len() {
+        for place in (1..=index).rev() {
+            if at(&members[place - 1])[axis].total_cmp(&at(&members[place])[axis]).is_le() {
+                break;
+            }
+            members.swap(place - 1, place);
+        }
+    }
 }
 
 /// Returns the bracket of a ray with its first root at this distance.

@@ -135,14 +135,15 @@ impl<T: Implicit> TrueRay<'_, T> {
         let [origin, dir] = exact_line(&self.frame.line(Sight::along(self.ray).line()))?;
         let whole = field.exactly_along(&origin, &dir)?;
         let beyond = BEYOND * (low.abs() + high.abs() + self.closest.abs());
-        let root =
-            whole.first_root(self.closest + low - beyond, self.closest + high + beyond, |root| {
-                match (origin_side, root.rises) {
-                    (None, _) => true,
-                    (Some(side), Some(rises)) => rises == (side == Side::Inside),
-                    (Some(_), None) => false,
-                }
-            });
+        let root = whole.first_root(
+            self.closest + low - beyond,
+            self.closest + high + beyond,
+            &|root| match (origin_side, root.rises) {
+                (None, _) => true,
+                (Some(side), Some(rises)) => rises == (side == Side::Inside),
+                (Some(_), None) => false,
+            },
+        );
         Some(root.map(|root| root.nearest(self.closest)))
     }
 }

@@ -5,6 +5,7 @@ use super::check;
 use super::equation::{Equation, HitEnclosure, Values, hit_at, is_kept, may_be_hit};
 use crate::geometry::sight::{Line, Sight};
 use f256::f256;
+use tabray_exact::formula::field::Field;
 use tabray_exact::formula::rational::Rational;
 use tabray_exact::interval::{Fine, Float, Interval, Wide};
 use tabray_exact::polynomial::{Coefficient, MAX_COEFFICIENTS, Polynomial};
@@ -127,8 +128,12 @@ fn visit_hits<C: Coefficient>(
 /// or the numbers of the ray are not fractions of few enough digits.
 pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclosure<f256>> {
     let field = shape.field()?;
-    let line = shape.to_local(sight.line::<Fine>());
-    let [origin, dir] = exact_line(&line)?;
+    exactly_along(shape, field, &shape.to_local(sight.line::<Fine>()))
+}
+
+/// The same for a line in the equation's coordinates. The shape is a `dyn` to compile this only once.
+fn exactly_along(shape: &dyn Values<Wide>, field: &Field, line: &Line<Fine>) -> Option<HitEnclosure<f256>> {
+    let [origin, dir] = exact_line(line)?;
     let polynomial = field.exactly_along(&origin, &dir)?;
     let poles = match field.poles() {
         Some(poles) => Some(poles.exactly_along(&origin, &dir)?),
@@ -147,7 +152,7 @@ pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclo
     };
     let is_pole = |root: &Root| poles.as_ref().is_some_and(|poles| polynomial.shares(root, poles));
     let is_wanted = |root: &Root| is_hit(root.wide()) != Some(false) && !is_pole(root);
-    let root = polynomial.first_root(from, to, is_wanted);
+    let root = polynomial.first_root(from, to, &is_wanted);
     let found = match root.map(|root| root.wide()) {
         None => HitEnclosure::Misses,
         Some(at) if is_hit(at).is_some() => HitEnclosure::Hits(at),

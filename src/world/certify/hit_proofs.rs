@@ -214,7 +214,7 @@ impl Precise for f256 {
             return first_along(shape, line, leaves, 0);
         }
         let pieces = [COARSE.pieces(shape), FINE.pieces(shape)];
-        search::first_hit_in_turns(shape, &shape.to_local(*line), leaves, pieces)
+        search::first_hit_in_turns((shape, shape), &shape.to_local(*line), leaves, pieces)
     }
 
     fn all_along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {

@@ -57,9 +57,9 @@ pub fn first_hit<F: Float>(
 
 /// Finds the first hit with t > 0 in 237 bits. Only what 53 bits leave open is examined with 237, and from there on,
 /// 53 bits go on. Each search is given up after a number of pieces; with `leaves`, the line's true start lies on the
-/// surface, and is not a hit.
+/// surface, and is not a hit. The shape is given in both numbers, as a `dyn` to compile the search only once.
 pub fn first_hit_in_turns(
-    shape: &(impl Values<Interval> + Values<Wide>),
+    (rough, shape): (&dyn Values<Interval>, &dyn Values<Wide>),
     line: &Line<Wide>,
     leaves: bool,
     [mut pieces, mut fine_pieces]: [usize; 2],
@@ -68,7 +68,7 @@ pub fn first_hit_in_turns(
     let (mut places, mut from, mut width) = (Vec::new(), 0.0, DOUBTFUL);
     let found = loop {
         let stretch = Stretch::From(from);
-        let (found, end) = unchecked(shape, &coarse, leaves, &mut pieces, stretch, &mut places);
+        let (found, end) = unchecked(rough, &coarse, leaves, &mut pieces, stretch, &mut places);
         let Some(at) = first_possible(found) else { break HitEnclosure::Misses };
         if pieces == 0 {
             // What is too much for 53 bits although pieces are far longer than their rounding is so for 237, too.

@@ -76,7 +76,7 @@ fn many_digits_are_spent_only_where_few_leave_a_hit_in_doubt() {
     first_hit::<f64>(&step, &line, false, 2000);
     let few = step.0.replace(0);
     let line = Line { origin: origin.map(Interval::constant), dir: dir.map(Interval::constant) };
-    let found = first_hit_in_turns(&step, &line, false, [2000; 2]);
+    let found = first_hit_in_turns((&step, &step), &line, false, [2000; 2]);
     assert!(
         matches!(found, HitEnclosure::Doubtful(from) if (from.to_f64() - 2.3).abs() < 1e-14),
         "{found:?}"
@@ -109,7 +109,7 @@ fn count_by_size<N>(counts: &[Cell<usize>; 2]) {
 fn waves_without_end_are_given_up() {
     let waves = Waves(Default::default());
     let [origin, dir] = [[-2.0, 1.5, 0.5], [1.0, -0.25, 0.0]].map(|of| of.map(Interval::constant));
-    let found = first_hit_in_turns(&waves, &Line { origin, dir }, false, [400, 20]);
+    let found = first_hit_in_turns((&waves, &waves), &Line { origin, dir }, false, [400, 20]);
     assert!(matches!(found, HitEnclosure::Doubtful(_)), "{found:?}");
     let [few, more] = waves.0.map(Cell::into_inner);
     assert!(few <= 4 * 400 && more <= 4 * 20, "{few} and {more} evaluations");
@@ -134,7 +134,7 @@ impl Equation for Planes {
 fn what_few_digits_leave_open_is_decided_by_more_and_from_there_few_go_on() {
     let planes = Planes(Default::default());
     let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::constant));
-    let found = first_hit_in_turns(&planes, &Line { origin, dir }, false, [2000; 2]);
+    let found = first_hit_in_turns((&planes, &planes), &Line { origin, dir }, false, [2000; 2]);
     let HitEnclosure::Hits(at) = found else { panic!("{found:?}") };
     assert!((at.low.to_f64() - 2.7).abs() < 1e-15, "{at:?}");
     let [few, more] = planes.0.map(Cell::into_inner);
