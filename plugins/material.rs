@@ -5,6 +5,13 @@ use tabray::prelude::*;
 static AMBIENT: Pparm<Rgb> =
     Pparm::or("ambient", "the emission in red, green and blue, independent of lights", Rgb::ZERO)
         .each(COLOUR);
+static EMISSION: Pparm<Rgb> = Pparm::or(
+    "emission",
+    "the light that it gives in red, green and blue; it lights others where the camera has `bounces`",
+    Rgb::ZERO,
+)
+.each(COLOUR)
+.not_dumped();
 static DIFFUSE: Pparm<Rgb> =
     Pparm::or("diffuse", "the diffuse reflection coefficients for red, green and blue", Rgb::ZERO)
         .known_as(&["color", "colour", "albedo"])
@@ -24,12 +31,13 @@ static TRANSPARENCY: Pparm<f64> =
         .between(0.0, 1.0)
         .dumped("transparency", " \n\n");
 
-const TABLE: Table = &[&AMBIENT, &DIFFUSE, &SPECULAR, &SHININESS, &TRANSPARENCY];
+const TABLE: Table = &[&AMBIENT, &DIFFUSE, &SPECULAR, &SHININESS, &TRANSPARENCY, &EMISSION];
 
 inventory::submit! {
     Entity::material("material", "how a surface emits, reflects and transmits light", &[TABLE], |args| {
         Ok(Material {
             ambient: args.get(&AMBIENT),
+            emission: args.get(&EMISSION),
             diffuse: args.get(&DIFFUSE),
             specular: args.get(&SPECULAR).0,
             shininess: args.get(&SHININESS),

@@ -50,7 +50,7 @@ use tabray_lang::registry::Registry;
 /// to standard error and writes its image, a PPM, to standard output. Unless the scene's camera says otherwise, it uses
 /// the notes' own methods. Warnings follow the dump; `--quiet` leaves them out.
 #[derive(Parser)]
-#[command(name = "tabray", version, after_help = EXIT_STATUS, after_long_help = EXAMPLES)]
+#[command(name = "tabray", version, after_help = EXIT_STATUS)]
 struct Cli {
     /// The format of messages
     #[arg(long, global = true, value_name = "FORM", default_value = "human")]
@@ -91,9 +91,18 @@ const EXAMPLES: &str = concat!(
   tabray help render                        # explains the options of `render`"
 );
 
+/// Returns [`EXAMPLES`] without those of commands that are not linked.
+fn examples() -> String {
+    let is_linked = |line: &&str| {
+        let command = line.strip_prefix("  tabray ").and_then(|rest| rest.split(' ').next());
+        command.is_none_or(|name| name == "help" || Command::named(name).is_some())
+    };
+    EXAMPLES.lines().filter(is_linked).collect::<Vec<_>>().join("\n")
+}
+
 /// Returns the command line, under the name of the running program.
 pub fn line() -> clap::Command {
-    help::grouped(program::named(command::with_all(Cli::command())))
+    help::grouped(program::named(command::with_all(Cli::command().after_long_help(examples()))))
 }
 
 /// Runs the command that the program's arguments name, with every plugin that is linked in. Messages go to standard

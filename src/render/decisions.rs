@@ -55,6 +55,7 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     if !plan.needs.lights.is_empty() {
         all.push(decision("shadows", shadows(plan)));
     }
+    all.extend(bounces(&plan.camera).map(|text| decision("bounces", text)));
     all.push(decision("glass", glass(plan)));
     all.push(decision("mirrors", mirrors(plan)));
     all.extend(plan.depth.as_ref().map(|depth| decision("depth", self::depth(model, depth))));
@@ -104,6 +105,17 @@ fn certain() -> String {
         "all rays through a pixel are enclosed at once, in up to {MAX_FOOTPRINTS} footprints, each cut into quarters up to \
          {MAX_CUTS} times: where that proves the error, the pixel takes no samples"
     )
+}
+
+fn bounces(camera: &Sensor) -> Option<String> {
+    let surfaces = match camera.bounces {
+        0 => return None,
+        1 => "one surface".to_owned(),
+        bounces => format!("up to {bounces} surfaces"),
+    };
+    Some(format!(
+        "light reaches matt surfaces by {surfaces}, each sample along one path; nothing is left out"
+    ))
 }
 
 fn lights(plan: &Plan) -> String {

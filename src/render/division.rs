@@ -166,7 +166,7 @@ impl TraceObserver for Work {
     fn count(&mut self, count: Count) {
         self.0 += match count {
             Count::Rays(RayKind::Primary | RayKind::Shadow, rays) => RAY * rays as u64,
-            Count::Rays(RayKind::Reflected | RayKind::Transmitted, rays) => RAY_ONWARD * rays as u64,
+            Count::Rays(_, rays) => RAY_ONWARD * rays as u64,
             Count::Tested(_, tests) => TEST * tests as u64,
             _ => 0,
         };

@@ -7,19 +7,27 @@ pub struct Levels {
     pub brightest: u8,
     /// The number of white pixels.
     pub white: usize,
+    /// The number of pixels in runs of [`RUN`] in which no byte reaches [`DARK`].
+    pub dark: usize,
     /// The number of all pixels.
     pub pixels: usize,
 }
 
+/// The number of pixels that are looked at together.
+const RUN: usize = 64;
+
+/// The least byte that is not almost black.
+pub const DARK: u8 = 8;
+
 impl Levels {
     /// Adds pixels: red, green and blue of each.
     pub fn add(&mut self, bytes: &[u8]) {
-        const PIXELS: usize = 64;
-        for bytes in bytes.chunks(3 * PIXELS) {
+        for bytes in bytes.chunks(3 * RUN) {
             let brightest = bytes.iter().copied().fold(0, u8::max);
             self.brightest = self.brightest.max(brightest);
             let (pixels, _) = bytes.as_chunks::<3>();
             self.pixels += pixels.len();
+            self.dark += if brightest < DARK { pixels.len() } else { 0 };
             // Few pixels are white, and counting them takes many times as long as finding out that there are none.
             if brightest == u8::MAX {
                 self.white +=
@@ -38,9 +46,9 @@ mod tests {
         let mut levels = Levels::default();
         levels.add(&[255, 255, 255, 255, 255, 254, 0, 0, 0]);
         levels.add(&[255; 6]);
-        assert_eq!(levels, Levels { brightest: 255, white: 3, pixels: 5 });
+        assert_eq!(levels, Levels { brightest: 255, white: 3, dark: 0, pixels: 5 });
         let mut dark = Levels::default();
         dark.add(&[7, 0, 3]);
-        assert_eq!(dark, Levels { brightest: 7, white: 0, pixels: 1 });
+        assert_eq!(dark, Levels { brightest: 7, white: 0, dark: 1, pixels: 1 });
     }
 }

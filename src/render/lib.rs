@@ -26,7 +26,7 @@ pub mod trace;
 
 pub use bytes::to_byte;
 pub use flaws::{BudgetCuts, FarPaths, Flaws, Undecided};
-pub use levels::Levels;
+pub use levels::{DARK, Levels};
 pub use observer::{Count, DropReason, Event, Hit, LightOutcome, RayKind, RayPurpose, TraceObserver};
 pub use plan::Plan;
 pub use ray_stats::{RayStats, TestCounts};

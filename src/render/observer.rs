@@ -100,11 +100,14 @@ pub enum RayKind {
     Reflected,
     /// A ray transmitted through glass.
     Transmitted,
+    /// A ray from a matt surface to what else lights it.
+    Scattered,
 }
 
 impl RayKind {
     /// All kinds, in the order of their declaration.
-    pub const ALL: [Self; 4] = [Self::Primary, Self::Shadow, Self::Reflected, Self::Transmitted];
+    pub const ALL: [Self; 5] =
+        [Self::Primary, Self::Shadow, Self::Reflected, Self::Transmitted, Self::Scattered];
 }
 
 impl fmt::Display for RayKind {
@@ -114,6 +117,7 @@ impl fmt::Display for RayKind {
             Self::Shadow => "shadow",
             Self::Reflected => "reflected",
             Self::Transmitted => "transmitted",
+            Self::Scattered => "scattered",
         })
     }
 }
@@ -176,6 +180,11 @@ pub enum RayPurpose {
     Reflected {
         /// The factor by which the ray's colour is multiplied.
         specular: Rgb,
+    },
+    /// A ray from a matt surface to what else lights it.
+    Scattered {
+        /// The factor by which the ray's colour is multiplied.
+        diffuse: Rgb,
     },
     /// A ray toward a light, to find what blocks it.
     Shadow {

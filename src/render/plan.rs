@@ -53,7 +53,7 @@ pub struct Plan<'m> {
     /// The objects whose hits may take long to find, where rays continue.
     pub(crate) costly: Option<CostlyObjects>,
     /// The maximum number of reflections and transmissions on a path.
-    pub bounces: usize,
+    pub max_depth: usize,
     /// The lights that are sampled, and what is left out.
     pub needs: Needs,
     /// The lights that a closed object hides from all visible points.
@@ -121,7 +121,7 @@ impl<'m> Plan<'m> {
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
         let has_media = objects.iter().any(|object| object.material.medium().is_some());
         let costly = depth.as_ref().and_then(|_| CostlyObjects::of(objects));
-        let bounces = usize::MAX;
+        let max_depth = usize::MAX;
         let is_simple = tree.is_some() && depth.is_none() && !has_glass && !has_media;
         let same_look = if is_simple { SameLook::of(model) } else { None };
         Self {
@@ -137,7 +137,7 @@ impl<'m> Plan<'m> {
             prover,
             depth,
             costly,
-            bounces,
+            max_depth,
             needs,
             shut_out,
         }

@@ -11,6 +11,9 @@ pub type Rgb = DVec3;
 pub struct Material {
     /// The reflectivity for ambient light.
     pub ambient: Rgb,
+    /// The radiance that the surface gives by itself, in all directions. It is seen, and where the camera lets light
+    /// bounce, it lights other surfaces.
+    pub emission: Rgb,
     /// The reflectivity for light from the scene's lights, scattered diffusely.
     pub diffuse: Rgb,
     /// The mirror reflectivity.

@@ -69,6 +69,12 @@ impl Sample {
         self.draw(ON_FACETS - depth)
     }
 
+    /// Returns two numbers from 0 to 1, which choose where light goes on from a matt surface after this many rays of a
+    /// path.
+    pub fn on_scattering(&self, depth: u32) -> DVec2 {
+        self.draw(ON_SCATTERING + depth)
+    }
+
     /// Returns two numbers from 0 to 1, different for each purpose.
     fn draw(&self, purpose: u32) -> DVec2 {
         match self.sampler {
@@ -168,6 +174,10 @@ const ON_LENS: u32 = u32::MAX;
 
 /// The purpose of the numbers that choose a facet of the first surface on a path; those after it count downward.
 const ON_FACETS: u32 = u32::MAX - 1;
+
+/// The purpose of the numbers that choose where light goes on from the first surface on a path; those after it count
+/// upward. There are fewer lights.
+const ON_SCATTERING: u32 = 1 << 31;
 
 /// Returns the point of the unit disc that two numbers from 0 to 1 choose, uniformly by area.
 pub fn on_disc(numbers: DVec2) -> DVec2 {

@@ -47,6 +47,9 @@ pub struct Sensor {
     pub accuracy: Accuracy,
     /// The rules of light.
     pub rules: Rules,
+    /// The number of surfaces by which light may go on to a matt one, besides those that reflect or transmit it: 0 where
+    /// matt surfaces do not light each other.
+    pub bounces: u32,
 }
 
 /// The sensor of the notes' camera, without pixels.
@@ -83,7 +86,14 @@ impl Sensor {
             transfer: Transfer::default(),
             accuracy: Accuracy::default(),
             rules: Rules::default(),
+            bounces: 0,
         }
+    }
+
+    /// Tells whether each pixel has a single ray through its middle, which needs no random numbers. Where light bounces,
+    /// even a single ray draws where it goes on.
+    pub fn is_single(&self) -> bool {
+        self.samples == 1 && self.adaptive.is_none() && self.bounces == 0
     }
 
     /// Returns the z, in world units, beyond which planes are cut off, if they are.
@@ -124,7 +134,7 @@ impl Sensor {
     }
 
     /// Returns the image positions of the first `count` of a pixel's primary rays, in pixels as [`ray`](Self::ray)
-    /// takes them, each with its random numbers. If all pixels have a single ray, it goes through the centre and
+    /// takes them, each with its random numbers. A [single](Self::is_single) ray goes through the centre and
     /// needs none.
     pub fn places(
         &self,
@@ -132,7 +142,7 @@ impl Sensor {
         y: usize,
         count: u32,
     ) -> impl Iterator<Item = (DVec2, Option<Sample>)> + use<> {
-        let (sampler, is_single) = (self.sampler, self.samples == 1 && self.adaptive.is_none());
+        let (sampler, is_single) = (self.sampler, self.is_single());
         let (pixel, middle) = (self.seed(x as i64, y as i64), DVec2::new(x as f64, y as f64));
         (0..count).map(move |index| {
             if is_single {

@@ -86,6 +86,44 @@ fn textures_show_the_light_that_an_image_shows_with_their_bytes() {
     assert_eq!(exr.get_pixel(2, 2).0, [7.5, 0.25, 0.125]);
 }
 
+#[test]
+fn light_of_surfaces_that_counts_twice_or_not_at_all_is_told() {
+    let folder = folder();
+    let ball = "sphere ball { material paint center 0 0 0 radius 1 }";
+    let check = |scene: &str| {
+        let (status, said) = run(&folder, scene, &["check", "a.ray"]);
+        assert_eq!(status, 0, "{said}");
+        said
+    };
+    let paint = "material paint { ambient 0.3 0.3 0.3 diffuse 0.5 0.5 0.5 }";
+    let said = check(&format!("{EYE} bounces 2 samples 4 }} {paint} {ball}"));
+    assert!(said.contains("the `ambient` of `paint` counts beside the light of `bounces`"), "{said}");
+    let said = check(&format!("{EYE} }} {paint} {ball}"));
+    assert!(!said.contains("bounces"), "{said}");
+    let sides = "material glow { emission 1 1 1 } shader both { sides back glow }";
+    let paint = "material paint { emission 0.3 0.3 0.3 }";
+    let said = check(&format!("{EYE} }} {paint} {ball}"));
+    assert!(!said.contains("black") && !said.contains("emission"), "{said}");
+    let coated = ball.replace("radius", "shader both radius");
+    let said =
+        check(&format!("{EYE} }} {paint} {} {coated}", sides.replace("shader both { sides", "sides both {")));
+    assert!(said.contains("the `emission` of `glow` does not count here"), "{said}");
+}
+
+#[test]
+fn a_room_that_no_lamp_lights_directly_is_told_of_bounces() {
+    let folder = folder();
+    let room = "material white { diffuse 0.8 0.8 0.8 }
+        sphere room { material white center 0 0 0 radius 9 }
+        sphere screen { material white center 0 0 -6 radius 2 }
+        light lamp { location 0 0 -8.5 emissivity 1 1 1 }";
+    let scene = |rows: &str| format!("{EYE} {rows} }} {room}").replace("pixeldim 5 5", "pixeldim 64 48");
+    let (_, said) = middle(&folder, &scene(""), &[]);
+    assert!(said.contains("matt surfaces do not light each other") && said.contains("`bounces 4`"), "{said}");
+    let (pixel, said) = middle(&folder, &scene("bounces 4 samples 16"), &[]);
+    assert!(pixel[0] > 20 && !said.contains("bounces"), "{pixel:?} {said}");
+}
+
 /// A ball 100 units wide, 400 units away, as a part in millimetres is.
 const PART: &str = "material grey { diffuse 0.8 0.8 0.8 }
     sphere part { material grey  center 0 0 0  radius 50 }

@@ -6,6 +6,7 @@
 mod common;
 
 mod backgrounds;
+mod bounces;
 mod colours;
 mod cuts;
 mod differences;

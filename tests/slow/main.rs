@@ -29,6 +29,7 @@ mod performance;
 mod placed;
 mod plugins;
 mod proven;
+mod radiosity;
 mod same;
 mod slurm;
 mod stop;

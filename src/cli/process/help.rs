@@ -40,5 +40,7 @@ mod tests {
     fn a_group_without_commands_has_no_heading() {
         let help = line().render_help().to_string();
         assert!(help.contains("\nScenes:\n") && !help.contains("\nRays:\n"), "{help}");
+        let long = line().render_long_help().to_string();
+        assert!(long.contains("  tabray render") && !long.contains("tabray watch"), "{long}");
     }
 }

@@ -115,6 +115,9 @@ impl Stats {
         let tally = self.tally.get();
         let mut out = format!("{:<12} {:>14}\n", "rays", "cast");
         for kind in RayKind::ALL {
+            if kind == RayKind::Scattered && tally.rays(kind) == 0 {
+                continue;
+            }
             let _ = writeln!(out, "{kind:<12} {:>14}", tally.rays(kind));
         }
         if let Some(mean) = mean_samples(&tally) {
@@ -187,6 +190,7 @@ impl Stats {
             rays: Rays {
                 primary: tally.rays(RayKind::Primary),
                 reflected: tally.rays(RayKind::Reflected),
+                scattered: Some(tally.rays(RayKind::Scattered)).filter(|rays| *rays != 0),
                 shadow: tally.rays(RayKind::Shadow),
                 transmitted: tally.rays(RayKind::Transmitted),
             },
@@ -255,6 +259,9 @@ struct Rays {
     primary: u64,
     /// Reflected rays.
     reflected: u64,
+    /// Rays from matt surfaces, where light bounces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scattered: Option<u64>,
     /// Shadow rays, from points that face the light; in a scene with glass, a new one from behind each pane.
     shadow: u64,
     /// Rays through glass.

@@ -68,7 +68,8 @@ pub fn warning(model: &Model) -> Option<Fault> {
 
 /// Tells whether an object is black without light.
 fn is_dark(object: &Object) -> bool {
-    object.shader.brightest(&object.material).is_some_and(|look| look.ambient == Rgb::ZERO)
+    let is_dark = object.shader.brightest(&object.material).is_some_and(|look| look.ambient == Rgb::ZERO);
+    is_dark && object.material.emission == Rgb::ZERO
 }
 
 /// Tells whether all objects have bounds that meet a condition. The search ends at the first object that does not.

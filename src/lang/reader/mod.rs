@@ -9,6 +9,7 @@ mod excerpt;
 mod fault;
 mod foreign;
 mod guesses;
+mod indirect;
 mod keyword;
 mod languages;
 mod levels;
@@ -326,7 +327,8 @@ fn finish(
     match model {
         Some(model) if !report.is_fatal() => {
             let black = if only_rays { None } else { black_scene::warning(&model) };
-            black.into_iter().for_each(|warning| report.add(warning));
+            let indirect = indirect::warnings(&model).filter(|_| !only_rays);
+            black.into_iter().chain(indirect).for_each(|warning| report.add(warning));
             Ok(Loaded { model, warnings: report.into_owned(), building, places })
         }
         _ => Err(report.into_owned()),

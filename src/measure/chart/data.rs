@@ -42,7 +42,7 @@ pub enum Subject {
     /// Colours of pixels, by the number of samples. Times are for one pixel.
     Samples,
     /// Colours of pixels, by the number of times that rays are reflected or transmitted. Times are for one pixel.
-    Bounces,
+    Depth,
     /// Colours of pixels, by accuracy and number of samples. Times are for one pixel.
     Whole,
 }
@@ -136,7 +136,7 @@ impl Panel {
     pub fn measure(&self) -> &'static str {
         match self.subject {
             Subject::Distances => "error of the distance, 99th percentile (world units)",
-            Subject::Methods | Subject::Samples | Subject::Bounces | Subject::Whole => {
+            Subject::Methods | Subject::Samples | Subject::Depth | Subject::Whole => {
                 "error of the colour, RMSE (1 = white)"
             }
         }
@@ -146,7 +146,7 @@ impl Panel {
     pub fn unit(&self) -> (&'static str, f64) {
         match self.subject {
             Subject::Distances => ("CPU time per ray and object (ns)", 1e9),
-            Subject::Methods | Subject::Samples | Subject::Bounces | Subject::Whole => {
+            Subject::Methods | Subject::Samples | Subject::Depth | Subject::Whole => {
                 ("CPU time per pixel (µs)", 1e6)
             }
         }
@@ -156,7 +156,7 @@ impl Panel {
     pub fn negligible(&self) -> f64 {
         match self.subject {
             Subject::Distances => 0.0,
-            Subject::Methods | Subject::Samples | Subject::Bounces | Subject::Whole => 1e-9,
+            Subject::Methods | Subject::Samples | Subject::Depth | Subject::Whole => 1e-9,
         }
     }
 }

@@ -211,7 +211,7 @@ fn draw_panel<D: DrawingBackend>(
     canvas.text(panel.unit().0, (middle, plot.bottom + 40.0), Align::Middle, axis)?;
     canvas.upward(panel.measure(), (corner.0 + 14.0, 0.5 * (plot.top + plot.bottom)), axis)?;
 
-    if matches!(panel.subject, Subject::Samples | Subject::Bounces) {
+    if matches!(panel.subject, Subject::Samples | Subject::Depth) {
         for family in [Family::Sobol, Family::Random, Family::Own] {
             let series = panel.points.iter().filter(|point| point.family == family);
             canvas.line(&series.map(place).collect::<Vec<_>>(), look(family).1, 1.0)?;

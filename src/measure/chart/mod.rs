@@ -111,7 +111,7 @@ impl Study {
         parts.push(Box::new(|progress| ControlFlow::Continue(Some(pictures::methods(self, progress)?))));
         let model = &self.candidates[self.default].model;
         if pictures::goes_on(model) {
-            parts.push(Box::new(|progress| pictures::bounces(self, progress)));
+            parts.push(Box::new(|progress| pictures::depths(self, progress)));
         }
         parts.push(Box::new(|progress| pictures::samples(self, pictures::SampledEffect::Picture, progress)));
         if pictures::has_size(model) {

@@ -36,7 +36,7 @@ const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
 pub(super) const ADAPTIVE: [[u32; 2]; 3] = [[4, 16], [4, 64], [4, 256]];
 
 /// The numbers of reflections and transmissions on a path that are compared, besides all.
-const BOUNCES: [usize; 8] = [0, 1, 2, 3, 4, 6, 8, 12];
+const DEPTHS: [usize; 8] = [0, 1, 2, 3, 4, 6, 8, 12];
 
 /// The minimum number of pixels of which the true colours must be known.
 const FEWEST: usize = 256;
@@ -65,9 +65,9 @@ pub fn work(study: &Study) -> usize {
     let kinds = 1 + usize::from(has_size(&study.candidates[study.default].model));
     let of_images = |count: usize| count * METHOD_TESTS / 10 + clock::work(count);
     let model = &study.candidates[study.default].model;
-    let bounces = if goes_on(model) { of_images(BOUNCES.len() + 1) } else { 0 };
+    let depths = if goes_on(model) { of_images(DEPTHS.len() + 1) } else { 0 };
     of_images(study.candidates.len())
-        + bounces
+        + depths
         + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len() + ADAPTIVE.len()))
 }
 
@@ -147,28 +147,28 @@ pub fn goes_on(model: &Model) -> bool {
 
 /// Compares how often rays are reflected and transmitted, on an image with one ray through the centre of each pixel;
 /// returns `None` where that makes no difference.
-pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
-    let plan = |bounces: usize| {
+pub fn depths(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
+    let plan = |depth: usize| {
         let mut plan = one_ray(&study.candidates[study.default].model);
-        plan.bounces = bounces;
+        plan.max_depth = depth;
         plan
     };
-    let plans = BOUNCES.into_iter().chain([usize::MAX]).map(plan).collect();
-    let compared = Compared::new(study, plans, BOUNCES.len());
+    let plans = DEPTHS.into_iter().chain([usize::MAX]).map(plan).collect();
+    let compared = Compared::new(study, plans, DEPTHS.len());
     let differences = compared.differences(progress)?;
     if differences.iter().all(|off| off.rmse == 0.0) {
         return ControlFlow::Continue(None);
     }
     let measured = differences.into_iter().zip(compared.times(progress)?);
     let points = compared.plans.iter().zip(measured).map(|(plan, (off, times))| {
-        let is_default = plan.bounces == usize::MAX;
-        let name = if is_default { "all".to_owned() } else { plan.bounces.to_string() };
+        let is_default = plan.max_depth == usize::MAX;
+        let name = if is_default { "all".to_owned() } else { plan.max_depth.to_string() };
         Point { is_default, ..point(name, Family::Own, times, off, (compared.pixels.len(), 1)) }
     });
     ControlFlow::Continue(Some(Panel {
         title: "reflections and transmissions, at most".to_owned(),
         note: format!("{}, against all that can be seen", compared.note()),
-        subject: Subject::Bounces,
+        subject: Subject::Depth,
         points: points.collect(),
     }))
 }

@@ -24,7 +24,7 @@ pub fn words(chart: &Chart) -> String {
             Subject::Distances => distances(chart, panel),
             Subject::Methods => methods(chart, panel),
             Subject::Samples => samples(chart, panel),
-            Subject::Bounces => bounces(panel),
+            Subject::Depth => depths(panel),
             Subject::Whole => front(chart, panel).into_iter().chain(default_position(chart, panel)).collect(),
         };
         for line in lines.into_iter().chain(barred(chart, panel)) {
@@ -192,7 +192,7 @@ fn methods(chart: &Chart, panel: &Panel) -> Vec<String> {
     lines
 }
 
-fn bounces(panel: &Panel) -> Vec<String> {
+fn depths(panel: &Panel) -> Vec<String> {
     let all = panel.points.iter().find(|point| point.is_default);
     let fits = |point: &&Point| point.worst <= 0.5 / 255.0;
     let line = |what: &str, point: &Point| format!("{what}: {}, {}", point.name, time(panel, point));

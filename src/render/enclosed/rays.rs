@@ -7,6 +7,7 @@ use super::media;
 use super::number::{Hit, Number};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::{HitPoints, is_black, tint};
+use crate::plan::depth::LightRange;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
 use tabray_world::geometry::sight::Line;
@@ -245,6 +246,16 @@ impl<'s> EnclosingTracer<'s> {
     fn own<N: Number>(&self, ray: &Ray<N>, travelled: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
         let toward = per_axis(|axis| ray.path.line.dir[axis] / ray.length);
         let mut colour = surface.ambient;
+        if let Some(most) = self.scene.depth.and_then(|depth| depth.scattered.first()) {
+            // The light that reaches a matt surface from others is only bounded.
+            let LightRange { low, high } = *most;
+            if !low.is_finite() || !high.is_finite() {
+                return None;
+            }
+            let any = |channel: usize| Interval { low: N::of(low[channel]), high: N::of(high[channel]) };
+            colour =
+                per_axis(|channel| colour[channel] + surface.diffuse[channel] * N::enclosing(any(channel)));
+        }
         for index in self.scene.lights {
             let seen = (*index, self.lights);
             let added = match self.scene.model.lights[*index].value.emitter() {

@@ -7,6 +7,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
 use tabray_world::certify::Precise;
 use tabray_world::geometry::sight::Line;
+use tabray_world::material::Rgb;
 use tabray_world::patch::{MEAN_ROUNDING, MIN_COSINE, PatchBounds, Window};
 use tabray_world::rules;
 use tabray_world::scene::model::Object;
@@ -129,7 +130,11 @@ impl<N: Number> HitPoints<N> {
             of + Interval { low: N::of(-error), high: N::of(error) }
         };
         let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));
-        let (ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
+        let (mut ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
+        let emission = object.material.emission;
+        if emission != Rgb::ZERO {
+            ambient = per_axis(|channel| ambient[channel] + N::constant(emission[channel]));
+        }
         Some(Self {
             place,
             at,

@@ -86,7 +86,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) {
         let travelled = &surface.travelled[..group.padded()];
         let is_far = |lane: &usize| continue_mask[*lane] == 0 && rules::path_left(travelled[*lane]) < 0.0;
-        if self.depth >= self.plan.bounces || !(0..group.len).any(|lane| is_far(&lane)) {
+        if self.depth >= self.plan.max_depth || !(0..group.len).any(|lane| is_far(&lane)) {
             return;
         }
         let mut ends = vec![1; group.padded()];

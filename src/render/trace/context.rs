@@ -5,6 +5,7 @@ use super::draws::LightDraws;
 use super::estimate::AdaptiveScratch;
 use super::path_hash::PathHashes;
 use super::ray_group::{HitGroups, HitRecord, RayGroup};
+use super::scatter::CountedLight;
 use super::surface::{Errors, Surface};
 use super::wave::TreeScratch;
 use crate::observer::TraceObserver;
@@ -35,6 +36,8 @@ pub struct Tracer<'m, 'w, W> {
     pub(super) viewer: f64,
     /// The number of reflections and transmissions on the path of the current packet.
     pub(super) depth: usize,
+    /// The light that counts where the rays of the current packet end.
+    pub(super) counted: CountedLight,
     pub(super) scratch: &'w mut Scratch,
     pub(super) observer: &'w mut W,
 }
@@ -42,7 +45,16 @@ pub struct Tracer<'m, 'w, W> {
 impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
     /// Makes a tracer of a plan, which reports to an observer.
     pub fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, observer: &'w mut W) -> Self {
-        Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer }
+        Self {
+            model: plan.model,
+            plan,
+            cpu,
+            viewer: 0.0,
+            depth: 0,
+            counted: CountedLight::All,
+            scratch,
+            observer,
+        }
     }
 
     /// Returns how many tiles are best traced together.
@@ -180,6 +192,8 @@ pub(super) struct ShadingScratch {
     pub surface: Surface,
     /// The highlights of lamps in glass.
     pub glints: VectorList,
+    /// The diffuse reflectivities, where light goes on from the surface.
+    pub diffuse: VectorList,
     /// The directions in which rays continue.
     pub dir: VectorList,
     /// 1 for each ray that continues, and 0 for the others.

@@ -3,6 +3,7 @@
 use super::arrays::VectorList;
 use super::context::{ShadingScratch, Tracer};
 use super::ray_group::RayGroup;
+use super::scatter::CountedLight;
 use super::tree::{Budget, End, Ends, OpenRay, Tree};
 use super::wave::TreeScratch;
 use crate::limits::MAX_RAYS;
@@ -88,8 +89,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         // The hits of rays of little weight are not recorded, as another sample's tree may have ended before them.
         let records = self.scratch.path_hashes.is_on;
         let kind = |place: u32| {
-            let OpenRay { object, weight, .. } = scratch.wave[place as usize];
-            (object, records && weight.abs().max_element() >= HEAVY)
+            let OpenRay { object, weight, counted, .. } = scratch.wave[place as usize];
+            (object, counted, records && weight.abs().max_element() >= HEAVY)
         };
         order.sort_by_key(|place| kind(*place));
         let kinds: Vec<_> = order.iter().map(|place| kind(*place)).collect();
@@ -97,8 +98,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let together = if W::SEES { 1 } else { PACKET_SIZE };
         self.depth += 1;
         let mut start = 0;
-        while let Some((object, is_heavy)) = kinds.get(start).copied() {
-            let same = kinds[start..].iter().take(together).take_while(|other| **other == (object, is_heavy));
+        while let Some(kind) = kinds.get(start).copied() {
+            let same = kinds[start..].iter().take(together).take_while(|other| **other == kind);
+            let (object, counted, is_heavy) = kind;
             let places = &order[start..start + same.count()];
             start += places.len();
             self.scratch.path_hashes.is_on = is_heavy;
@@ -108,11 +110,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);
             self.begin_open(&scratch.wave, places);
             self.scratch.trees = Some(scratch);
+            self.counted = counted;
             self.trace(&mut group, &mut seen);
             scratch = self.scratch.trees.take().unwrap_or_default();
             scratch.note(&group, &seen);
         }
         self.depth -= 1;
+        self.counted = CountedLight::All;
         self.scratch.path_hashes.is_on = records;
         (scratch.group, scratch.seen, scratch.order) = (group, seen, order);
         scratch
@@ -122,13 +126,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     fn begin_open(&mut self, wave: &[OpenRay], places: &[u32]) {
         let of_kind =
             |kind: RayKind| places.iter().filter(|place| wave[**place as usize].kind == kind).count();
-        for kind in [RayKind::Reflected, RayKind::Transmitted] {
+        for kind in [RayKind::Reflected, RayKind::Transmitted, RayKind::Scattered] {
             self.observer.count(Count::Rays(kind, of_kind(kind)));
         }
         if W::SEES {
             let OpenRay { kind, weight, .. } = wave[places[0] as usize];
             self.observer.see(Event::Begin(match kind {
                 RayKind::Transmitted => RayPurpose::Transmitted { tint: weight, kept: 1.0 },
+                RayKind::Scattered => RayPurpose::Scattered { diffuse: weight },
                 _ => RayPurpose::Reflected { specular: weight },
             }));
         }
@@ -141,10 +146,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         shading: &mut ShadingScratch,
         colours: &mut VectorList,
     ) {
-        let ShadingScratch { surface, dir, .. } = shading;
+        let scatters = self.scatters(group, shading);
+        let ShadingScratch { surface, dir, diffuse, .. } = shading;
         let object = &self.model.objects[surface.index];
         let transparency = object.material.transparency;
-        if transparency == 0.0 && !surface.is_mirror && object.material.interface.is_none() {
+        if transparency == 0.0 && !surface.is_mirror && object.material.interface.is_none() && !scatters {
             return;
         }
         let Some(mut scratch) = self.scratch.trees.take() else { return };
@@ -168,7 +174,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             colours.set(lane, kept * colours.get(lane));
             let place = group.places[lane] as usize;
             let before = scratch.wave[place];
-            if before.depth as usize >= self.plan.bounces {
+            if before.depth as usize >= self.plan.max_depth {
                 continue;
             }
             let passed = surface.passed.get(lane).map_or(before.weight, |passed| before.weight * *passed);
@@ -176,14 +182,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
                 let keeps = match kind {
                     RayKind::Transmitted => crossings.is_none(),
+                    RayKind::Scattered => false,
                     _ => is_flat,
                 };
                 let (weight, shows_patches) = (passed * weight, before.shows_patches && keeps);
-                (weight != Rgb::ZERO).then_some(OpenRay { weight, dir, side, kind, shows_patches, ..ray })
+                let counted = before.counted.after(kind);
+                let ray = OpenRay { weight, dir, side, kind, shows_patches, counted, ..ray };
+                (weight != Rgb::ZERO).then_some(ray)
             };
+            let goes_on = scatters && before.bounces < self.plan.camera.bounces;
+            let scattered = if goes_on { self.scattered(group, surface, lane, before.depth) } else { None };
+            let scattered = scattered
+                .and_then(|dir| open(kept * diffuse.get(lane), dir, side, RayKind::Scattered))
+                .map(|ray| OpenRay { bounces: before.bounces + 1, ..ray });
             scratch.outcomes[place].onward = [
                 onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),
                 open(reflected, dir.get(lane), side, RayKind::Reflected),
+                scattered,
             ];
         }
         self.scratch.trees = Some(scratch);

@@ -25,6 +25,7 @@ mod occlusion;
 mod path_hash;
 mod ray_group;
 mod sampled;
+mod scatter;
 mod shade;
 mod surface;
 mod transmittance;
@@ -245,7 +246,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         match (camera.adaptive, &self.plan.prover) {
             (Some(adaptive), Some(prover)) => self.certain_pixels(pixels, adaptive, prover, &mut primary),
             (Some(adaptive), None) => self.adaptive_pixels(pixels, adaptive, &mut primary),
-            (None, _) if camera.samples == 1 => self.middles(pixels, &mut primary),
+            (None, _) if camera.is_single() => self.middles(pixels, &mut primary),
             (None, _) if sampled::is_unbounded(self.plan) => self.one_by_one(pixels, &mut primary),
             (None, _) => self.fixed_samples(pixels, &mut primary),
         }

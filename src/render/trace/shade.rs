@@ -44,7 +44,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
             while let Some((id, lanes)) = parts.next() {
                 if id == 0 {
-                    match &self.model.background {
+                    match self.model.background.as_ref().filter(|_| self.sees_background()) {
                         None => lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO)),
                         Some(background) => {
                             see_background(&*background.value, group, &hits.far, lanes, colours);
@@ -187,12 +187,20 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
+        if let Some(emitted) = self.emitted(object) {
+            colours.fill(count, emitted);
+        } else if material.emission != Rgb::ZERO {
+            (0..count).for_each(|lane| colours.set(lane, colours.get(lane) + material.emission));
+        }
         if self.scratch.path_hashes.is_on {
             let nearest = (self.depth == 0).then_some(distances);
             let shader = surface.look.is_none().then_some((&**shader, surface.points(count)));
             self.scratch.path_hashes.meet(cpu, &group.camera[..group.len], index, nearest, shader);
         }
-        let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
+        let goes_on = !self.plan.needs.lights.is_empty()
+            || surface.is_mirror
+            || material.transparency != 0.0
+            || self.plan.camera.bounces != 0;
         surface.errors = if let Some(errors) = mixed_errors {
             errors
         } else if goes_on {
@@ -224,7 +232,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             (&surface.travelled[..count], resized(&mut shading.continue_mask, count));
         light::reach(self.cpu, travelled, continue_mask);
         group.cull_faint(self.cpu, &branch, travelled, continue_mask);
-        self.end_bounces(continue_mask);
+        self.end_deep(continue_mask);
         shading.dir.copy(group.dir.view(count));
         surface.flip_sides(count);
         self.trace_secondary(group, shading, RayKind::Transmitted, branch);
@@ -237,9 +245,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Ends all rays where a measurement limits the number of bounces.
-    fn end_bounces(&self, continue_mask: &mut [u64]) {
-        if self.depth >= self.plan.bounces {
+    /// Ends all rays where a measurement limits their depth.
+    fn end_deep(&self, continue_mask: &mut [u64]) {
+        if self.depth >= self.plan.max_depth {
             continue_mask.fill(0);
         }
     }
@@ -269,7 +277,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             surface.keep_before(group.dir.view(count), &mut shading.dir);
         }
         group.cull_faint(cpu, &branch, travelled, continue_mask);
-        self.end_bounces(continue_mask);
+        self.end_deep(continue_mask);
         let do_all = continue_mask[0] != 0 && closest_hit::is_one(cpu, continue_mask);
         if do_all && group.len <= self.max_packet() {
             self.trace_all_secondary(group, shading, branch);
@@ -365,7 +373,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             *mask &= u64::from(is_chosen(lane));
         }
         group.cull_faint(self.cpu, &branch, travelled, continue_mask);
-        self.end_bounces(continue_mask);
+        self.end_deep(continue_mask);
         self.trace_secondary(group, shading, kind, branch);
     }
 

@@ -17,6 +17,7 @@
 //! an allowance of its own, fixed by its path, and is followed as soon as it is met, so the course's pictures do not
 //! change.
 
+use super::scatter::CountedLight;
 use crate::limits::{MAX_RAYS, MAX_TREE, MIN_PART};
 use crate::observer::{DropReason, RayKind};
 use crate::plan::depth::{Depth, LightRange};
@@ -66,13 +67,21 @@ pub(super) struct OpenRay {
     pub depth: u32,
     /// Whether its sample shows patches of surfaces: nothing on its path has spread or gathered rays.
     pub shows_patches: bool,
+    /// The number of matt surfaces on its path that it has left.
+    pub bounces: u32,
+    /// The light that counts where it ends.
+    pub counted: CountedLight,
 }
 
 impl OpenRay {
     /// Returns the range of light that it can add.
     fn range(&self, depth: &Depth) -> LightRange {
         let side = usize::from(self.side == Side::Inside);
-        let LightRange { low, high } = depth.ranges[self.object as usize][side];
+        let LightRange { low, high } = match (self.kind, self.counted) {
+            (RayKind::Scattered, _) => depth.scattered[self.bounces as usize - 1],
+            (_, CountedLight::All) => depth.ranges[self.object as usize][side],
+            (_, _) => depth.ranges[self.object as usize][side].from_nothing(),
+        };
         let [one, other] = [low, high].map(|light| times(self.weight, light));
         LightRange { low: one.min(other), high: one.max(other) }
     }
@@ -94,6 +103,8 @@ impl OpenRay {
             camera: camera as u8,
             depth: 0,
             shows_patches: true,
+            bounces: 0,
+            counted: CountedLight::All,
         }
     }
 }
@@ -173,7 +184,7 @@ impl Ends {
     pub fn of(camera: &Sensor) -> Self {
         let (display, parts) = (camera.display(), camera.samples.min(MIN_PART));
         Self {
-            is_averaged: camera.samples > 1 || camera.adaptive.is_some(),
+            is_averaged: !camera.is_single(),
             budget: Budget { rays: MAX_TREE / parts, work: MAX_RAYS as u32 / parts },
             faint: ENDED / (16.0 * f64::from(MAX_TREE) * 255.0 * display.steepest()),
             display,

@@ -7,10 +7,10 @@ use glam::DVec3;
 use std::ops::Range;
 use survey::Survey;
 use tabray_core::geometry::aabb::Aabb;
-use tabray_core::render::Levels;
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace::{self, Scratch, Tracer};
+use tabray_core::render::{DARK, Levels};
 use tabray_core::scene::attribute::Pose;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::model::{Model, Object};
@@ -25,15 +25,15 @@ use tabray_core::world::sensor::Sensor;
 /// The maximum number of columns and rows of pixels that are looked at.
 const GRID: [usize; 2] = [40, 30];
 
-/// The least level of an image that is not black.
-const DARK: u8 = 8;
-
 /// The level that a cure aims at.
 const GOOD: f64 = 128.0;
 
 /// The share of pixels beyond which an image is burnt, and the light beyond which a pixel is.
 const BURNT: f64 = 0.25;
 const TOO_BRIGHT: f64 = 1.02;
+
+/// The share of pixels beyond which an image is dark because surfaces do not light each other.
+const UNLIT: f64 = 0.5;
 
 /// The largest exposure of a camera, in stops, upward and downward.
 const MAX_STOPS: f64 = 32.0;
@@ -42,7 +42,7 @@ const MAX_STOPS: f64 = 32.0;
 const NAMED: usize = 3;
 
 /// The number of reflections and transmissions of the rays with which an image is tried.
-const BOUNCES: usize = 4;
+const MAX_DEPTH: usize = 4;
 
 /// The maximum number of pixels that are tried with all reflections and transmissions, if the image is black with fewer.
 /// Between mirrors, such a pixel may take thousands of rays.
@@ -72,11 +72,11 @@ fn remark_on(image: &str, plan: &Plan, part: [&Range<usize>; 2], levels: &Levels
     empty(plan, &places).or_else(|| {
         let is_black = levels.brightest < DARK;
         if !is_black && !is_burnt(levels) {
-            return flat(plan.model);
+            return flat(plan.model).or_else(|| unlit(plan.model, &places, levels));
         }
         // The plan of a picture leaves out lights.
         let mut plan = Plan::new(plan.model);
-        plan.bounces = BOUNCES;
+        plan.max_depth = MAX_DEPTH;
         let survey = Survey::of(&plan, &places);
         if is_black {
             Some(black(image, &plan, &survey, levels.brightest))
@@ -110,6 +110,28 @@ fn flat(model: &Model) -> Option<Remark> {
     of_sky.or_else(|| model.objects.iter().find(is_rough).map(|object| said(object.args.name(), rough)))
 }
 
+/// Remarks that most of an image is in the shadow of lamps, where only other surfaces could light it.
+fn unlit(model: &Model, places: &[[usize; 2]], levels: &Levels) -> Option<Remark> {
+    let camera = &model.camera.value;
+    let share = levels.dark as f64 / levels.pixels as f64;
+    if camera.rules == Rules::Notes || camera.bounces != 0 || share <= UNLIT || model.lights.is_empty() {
+        return None;
+    }
+    let mut plan = Plan::new(model);
+    plan.set_adaptive(None);
+    plan.camera.samples = 1;
+    plan.max_depth = MAX_DEPTH;
+    let survey = Survey::of(&plan, places);
+    let blocked = survey.lamps.iter().map(|lamp| lamp.blocked).max()?;
+    (blocked as f64 > UNLIT * places.len() as f64).then(|| Remark {
+        message: format!(
+            "{:.0} % of the image is almost black: it lies in shadow, and matt surfaces do not light each other",
+            100.0 * share
+        ),
+        help: "`bounces 4` and `samples 64` in the camera let them".to_owned(),
+    })
+}
+
 /// Returns the remark on a model's image, from a few of its pixels.
 pub fn tried(model: &Model) -> Option<Remark> {
     // The deepest reflections need more of a stack than the program's own thread has.
@@ -130,9 +152,9 @@ fn tried_here(model: &Model) -> Option<Remark> {
         (0..places.len()).for_each(|index| levels.add(&display.bytes(colours.get(index))));
         levels
     };
-    plan.bounces = BOUNCES;
+    plan.max_depth = MAX_DEPTH;
     let mut found = levels(&plan, &places);
-    plan.bounces = usize::MAX;
+    plan.max_depth = usize::MAX;
     if found.brightest < DARK && plan.depth.is_some() {
         let step = places.len().div_ceil(MAX_DEEP).max(1);
         let few: Vec<_> = places.iter().skip(step / 2).step_by(step).copied().collect();

@@ -113,6 +113,7 @@ impl<'m> Listener<'m> {
             RayPurpose::Primary => ("primary", None),
             RayPurpose::Transmitted { tint, .. } => ("transmitted", Some(tint)),
             RayPurpose::Reflected { specular } => ("reflected", Some(specular)),
+            RayPurpose::Scattered { diffuse } => ("scattered", Some(diffuse)),
             RayPurpose::Shadow { .. } => ("shadow", None),
         };
         let number = self.rays.len();

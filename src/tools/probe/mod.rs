@@ -136,11 +136,16 @@ impl<W: Write> Probe<'_, W> {
     fn begin(&mut self, purpose: RayPurpose) {
         match purpose {
             RayPurpose::Primary => self.heading("primary ray"),
-            RayPurpose::Transmitted { tint: weight, .. } | RayPurpose::Reflected { specular: weight }
+            RayPurpose::Transmitted { tint: weight, .. }
+            | RayPurpose::Reflected { specular: weight }
+            | RayPurpose::Scattered { diffuse: weight }
                 if self.is_free =>
             {
-                let is_transmitted = matches!(purpose, RayPurpose::Transmitted { .. });
-                let kind = if is_transmitted { "transmitted" } else { "reflected" };
+                let kind = match purpose {
+                    RayPurpose::Transmitted { .. } => "transmitted",
+                    RayPurpose::Scattered { .. } => "scattered",
+                    _ => "reflected",
+                };
                 self.followed += 1;
                 self.heading(&format!("{kind} ray {}, of weight {}", self.followed, triple(weight)));
             }
@@ -150,8 +155,8 @@ impl<W: Write> Probe<'_, W> {
                 triple(tint),
                 number(kept)
             )),
-            RayPurpose::Reflected { specular } => {
-                self.heading(&format!("reflected ray {}, times {}", self.depth, triple(specular)));
+            RayPurpose::Reflected { specular: factor } | RayPurpose::Scattered { diffuse: factor } => {
+                self.heading(&format!("reflected ray {}, times {}", self.depth, triple(factor)));
             }
             RayPurpose::Shadow { distance } => {
                 self.light = Some(distance);

@@ -66,9 +66,18 @@ pub(super) static TONE: Pparm<Tone> =
 pub(super) static TRANSFER: Pparm<Transfer> =
     Pparm::or("transfer", "how light is encoded in bytes, under the free rules", Transfer::Srgb).not_dumped();
 
+/// Along each path, one direction is drawn for each bounce.
+pub(super) static BOUNCES: Pparm<i64> = Pparm::or(
+    "bounces",
+    "by how many surfaces light goes on to matt ones, under the free rules; it takes many samples",
+    0,
+)
+.between(0.0, 64.0)
+.not_dumped();
+
 /// The attributes that every camera has before and after its own.
 pub(super) const FILM: [Table; 2] =
-    [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES, &EXPOSURE, &TONE, &TRANSFER]];
+    [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES, &EXPOSURE, &TONE, &TRANSFER, &BOUNCES]];
 
 /// How the light of a lamp weakens, and the distance at which it is as bright as its emissivity.
 pub(super) static FALLOFF: Pparm<Falloff> =

@@ -10,8 +10,8 @@ use crate::material::Material;
 use crate::rules::{Fading, Rules};
 use crate::scene::attribute::Attribute;
 use crate::scene::common::{
-    ACCURACY, AT, BACKGROUND, EXPOSURE, FALLOFF, FILM, LIGHT, LIGHTS, MATERIAL, MATERIAL_OF_ALL, OBJECT,
-    OF_OBJECTS, PIXELDIM, RULES, SAMPLES, SHADER, TONE, TRANSFER,
+    ACCURACY, AT, BACKGROUND, BOUNCES, EXPOSURE, FALLOFF, FILM, LIGHT, LIGHTS, MATERIAL, MATERIAL_OF_ALL,
+    OBJECT, OF_OBJECTS, PIXELDIM, RULES, SAMPLES, SHADER, TONE, TRANSFER,
 };
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
@@ -304,9 +304,9 @@ impl Args {
             None if accuracy != Accuracy::Classic => camera.rules(),
             _ => Rules::Notes,
         });
-        let (exposure, tone, transfer) = match rules {
+        let (exposure, tone, transfer, bounces) = match rules {
             Rules::Notes => Default::default(),
-            Rules::Free => (self.get(&EXPOSURE), self.get(&TONE), self.get(&TRANSFER)),
+            Rules::Free => (self.get(&EXPOSURE), self.get(&TONE), self.get(&TRANSFER), self.get(&BOUNCES)),
         };
         Sensor {
             // The attributes' rules ensure that these casts are lossless.
@@ -316,6 +316,7 @@ impl Args {
             exposure,
             tone,
             transfer,
+            bounces: bounces as u32,
             ..Sensor::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
         }
     }
@@ -336,7 +337,7 @@ impl Args {
 
     /// Returns the names of a camera's attributes that the scene gives and only the free rules use.
     pub fn given_of_free_rules(&self) -> impl Iterator<Item = &'static str> {
-        let names = [EXPOSURE.name(), TONE.name(), TRANSFER.name()];
+        let names = [EXPOSURE.name(), TONE.name(), TRANSFER.name(), BOUNCES.name()];
         names.into_iter().filter(|name| self.given().any(|(attribute, _)| attribute.name() == *name))
     }
 

@@ -85,29 +85,33 @@ pub struct Depth {
     /// Under the free rules, the bounds of the light that rays leaving each object return, for each side of the object,
     /// the outside first.
     pub ranges: Vec<[LightRange; 2]>,
+    /// The bounds of the light that rays from matt surfaces return, by the number of matt surfaces before on their
+    /// paths; empty where light does not bounce.
+    pub scattered: Vec<LightRange>,
 }
 
 impl Depth {
-    /// Computes the bounds of a scene; `None` where no object reflects or transmits rays.
+    /// Computes the bounds of a scene; `None` where no ray continues from an object.
     pub fn new(model: &Model) -> Option<Self> {
         let is_shiny = |object: &Object| {
             let look = object.shader.brightest(&object.material);
             object.material.transparency != 0.0 || look.is_none_or(|look| look.specular != Rgb::ZERO)
         };
-        model.objects.iter().any(is_shiny).then(|| Self::of(model))
+        let bounces = model.camera.value.bounces != 0;
+        (bounces || model.objects.iter().any(is_shiny)).then(|| Self::of(model))
     }
 
     /// Computes the bounds of any scene.
     pub(crate) fn of(model: &Model) -> Self {
         let looks = looks(model);
-        let surfaces = SurfaceLight::all(model, &looks, BoundedLight::default());
+        let surfaces = surfaces(model, &looks, BoundedLight::default(), background(model));
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
         let (most, objects) = VisibleSurfaces::new(model, surfaces, background(model)).bounds(cuts);
-        let ranges = match model.camera.value.rules {
-            Rules::Notes => Vec::new(),
+        let (ranges, scattered) = match model.camera.value.rules {
+            Rules::Notes => Default::default(),
             Rules::Free => range::ranges(model, &looks),
         };
-        Self { most, objects, ranges }
+        Self { most, objects, ranges, scattered }
     }
 
     /// Returns a bound on the light of rays that leave the object of this index, times the path length; for `None`,
@@ -124,7 +128,7 @@ impl Depth {
                 (branch.faint, branch.faint_alone) = (f64::INFINITY, f64::INFINITY);
             }
         }
-        for range in self.ranges.as_flattened_mut() {
+        for range in self.ranges.as_flattened_mut().iter_mut().chain(&mut self.scattered) {
             range.high = Rgb::INFINITY;
         }
         self
@@ -144,13 +148,9 @@ fn background(model: &Model) -> f64 {
 /// Bounds what a primary ray that hits an object returns in any channel, times the path length; infinite where there is
 /// no bound.
 pub(crate) fn most(model: &Model) -> f64 {
-    VisibleSurfaces::new(
-        model,
-        SurfaceLight::all(model, &looks(model), BoundedLight::default()),
-        background(model),
-    )
-    .bounds(false)
-    .0
+    let background = background(model);
+    let surfaces = surfaces(model, &looks(model), BoundedLight::default(), background);
+    VisibleSurfaces::new(model, surfaces, background).bounds(false).0
 }
 
 /// Bounds what each light of a model adds to a primary ray in any channel, times the path length; infinite where there
@@ -159,9 +159,39 @@ pub(crate) fn most_of_lights(model: &Model) -> Vec<f64> {
     let looks = looks(model);
     let most = |light: usize| {
         let of = BoundedLight { light: Some(light), channel: None };
-        VisibleSurfaces::new(model, SurfaceLight::all(model, &looks, of), 0.0).bounds(false).0
+        VisibleSurfaces::new(model, surfaces(model, &looks, of, 0.0), 0.0).bounds(false).0
     };
     parallel::map(model.lights.len(), most)
+}
+
+/// Bounds the surfaces of a scene, with the light that matt ones receive from others as their own.
+fn surfaces(model: &Model, looks: &[Option<Look>], of: BoundedLight, background: f64) -> Vec<SurfaceLight> {
+    let surfaces = SurfaceLight::all(model, looks, of);
+    match scattered(model, &surfaces, background).first() {
+        Some(most) => surfaces.into_iter().map(|surface| surface.lit_by(*most)).collect(),
+        None => surfaces,
+    }
+}
+
+/// Bounds the light of rays from matt surfaces, by the number of matt surfaces before on their paths; empty where light
+/// does not bounce.
+///
+/// Rays return at most `first`, if no matt surface passes on light, and `factor` times what each matt surface receives.
+fn scattered(model: &Model, surfaces: &[SurfaceLight], background: f64) -> Vec<f64> {
+    let bounces = model.camera.value.bounces as usize;
+    if bounces == 0 {
+        return Vec::new();
+    }
+    let most = |surfaces: Vec<SurfaceLight>, background| {
+        VisibleSurfaces::new(model, surfaces, background).bounds(false).0
+    };
+    let first = most(surfaces.to_vec(), background);
+    let factor = most(surfaces.iter().map(SurfaceLight::only_scattering).collect(), 0.0);
+    let mut all = vec![first; bounces];
+    for index in (1..bounces).rev() {
+        all[index - 1] = first + sides::gain(factor, all[index]);
+    }
+    all
 }
 
 /// Returns each object's brightest look, if it has one.

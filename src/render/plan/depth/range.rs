@@ -36,12 +36,29 @@ pub struct LightRange {
     pub high: Rgb,
 }
 
-/// Bounds the light of rays that leave each side of a model's objects, given the objects' brightest looks.
-pub(super) fn ranges(model: &Model, looks: &[Option<Look>]) -> Vec<Sides<LightRange>> {
+impl LightRange {
+    /// Returns the range for rays to which the light of some things does not count.
+    pub fn from_nothing(self) -> Self {
+        Self { low: self.low.min(Rgb::ZERO), ..self }
+    }
+}
+
+/// Bounds the light of rays that leave each side of a model's objects, given the objects' brightest looks, and that of
+/// rays from matt surfaces, by the number of matt surfaces before on their paths.
+pub(super) fn ranges(model: &Model, looks: &[Option<Look>]) -> (Vec<Sides<LightRange>>, Vec<LightRange>) {
     let mut ranges = vec![[LightRange::default(); 2]; model.objects.len()];
+    let mut scattered = vec![LightRange::default(); model.camera.value.bounces as usize];
     let [darkest, brightest] = background(model);
     for channel in 0..3 {
-        let surfaces = SurfaceLight::all(model, looks, BoundedLight { light: None, channel: Some(channel) });
+        let of = BoundedLight { light: None, channel: Some(channel) };
+        for (range, most) in scattered.iter_mut().zip(super::scattered(
+            model,
+            &SurfaceLight::all(model, looks, of),
+            brightest[channel],
+        )) {
+            range.high[channel] = most;
+        }
+        let surfaces = super::surfaces(model, looks, of, brightest[channel]);
         for (index, most) in VisibleSurfaces::new(model, surfaces, brightest[channel]).beyond() {
             (0..SIDES.len()).for_each(|side| ranges[index][side].high[channel] = most[side]);
         }
@@ -50,7 +67,10 @@ pub(super) fn ranges(model: &Model, looks: &[Option<Look>]) -> Vec<Sides<LightRa
     for range in ranges.as_flattened_mut() {
         range.low = least.unwrap_or(-range.high).min(range.high);
     }
-    ranges
+    for range in &mut scattered {
+        range.low = if least.is_some() { Rgb::ZERO } else { -range.high };
+    }
+    (ranges, scattered)
 }
 
 /// Returns the darkest and the brightest of the background, per channel.

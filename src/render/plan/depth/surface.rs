@@ -38,6 +38,8 @@ pub(super) struct SurfaceLight {
     through: f64,
     /// The specular reflectivity.
     mirrored: f64,
+    /// The diffuse reflectivity, of the fraction of light that the surface keeps.
+    scattered: f64,
     /// Whether light is divided between the two, by an interface.
     is_split: bool,
     /// A factor of the light that an interface passes on: 1, or [`HELD`] where only that gives a bound under the free
@@ -77,10 +79,23 @@ impl SurfaceLight {
                     } else {
                         look.map_or(f64::INFINITY, |look| of.largest(look.specular)) * ROUNDING
                     },
+                    scattered: look.map_or(f64::INFINITY, |look| {
+                        gain(1.0 - object.material.transparency, of.largest(look.diffuse)) * ROUNDING
+                    }),
                     is_split,
                 }
             })
             .collect()
+    }
+
+    /// Adds the light that the surface scatters if it receives this much from everywhere to its own.
+    pub fn lit_by(self, most: f64) -> Self {
+        Self { own: self.own + gain(self.scattered, most) * ROUNDING, ..self }
+    }
+
+    /// Returns the surface with the light alone that it scatters if it receives 1 from everywhere.
+    pub fn only_scattering(&self) -> Self {
+        Self { own: self.scattered, ..*self }
     }
 
     /// Tells whether rays continue from the surface.
@@ -156,7 +171,8 @@ fn tint(object: &Object, look: Option<&Look>, of: BoundedLight) -> f64 {
 /// Bounds the light of an object's own surface; under the notes' rules, times the path length to the surface.
 fn own(model: &Model, object: &Object, look: &Look, of: BoundedLight, any_light_comes: bool) -> f64 {
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
-    let ambient = if of.light.is_some() { Rgb::ZERO } else { look.ambient.abs() };
+    let given = look.ambient.abs() + object.material.emission.abs();
+    let ambient = if of.light.is_some() { Rgb::ZERO } else { given };
     scattered(model, object, ambient, [look.diffuse.abs(), highlight], of, any_light_comes)
 }
 

@@ -15,7 +15,7 @@
 //! that is needed. No ray could meet an object that is left out, so the image stays the same to the byte. All tests
 //! have margins far above the rounding errors of rays.
 //!
-//! With adaptive sampling, nothing is left out: a pixel's number of samples also depends on pixels around the image,
+//! Where light bounces, anything may light what is seen, and nothing is left out. With adaptive sampling, too: a pixel's number of samples also depends on pixels around the image,
 //! and on the lights that shine on its hits, even on black ones.
 //!
 //! The notes' program tests every ray against every shape, so with `--method classic` nothing is left out.
@@ -97,7 +97,7 @@ impl Needs {
     /// Finds what the image of the model's camera needs, given the objects' bounding boxes. `depth` tells which
     /// mirrors reflect nothing.
     pub fn of(model: &Model, bounds: &[Option<Aabb>], depth: Option<&Depth>) -> Self {
-        if model.camera.value.adaptive.is_some() {
+        if model.camera.value.adaptive.is_some() || model.camera.value.bounces != 0 {
             return Self::all(model);
         }
         // Rays of a draft may be off by 1e-3 of their length.

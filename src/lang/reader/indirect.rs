@@ -1,0 +1,40 @@
+//! Warnings about the light of surfaces where it does not count, or counts twice.
+
+use super::fault::Fault;
+use tabray_core::scene::kind::Kind;
+use tabray_core::scene::model::Model;
+use tabray_core::scene::value::Datum;
+use tabray_core::world::material::Rgb;
+
+/// Returns what to warn of in a scene.
+pub fn warnings(model: &Model) -> impl Iterator<Item = Fault> {
+    [counted_twice(model), left_out(model)].into_iter().flatten()
+}
+
+/// Warns of `ambient` beside `bounces`.
+fn counted_twice(model: &Model) -> Option<Fault> {
+    let has_both = |material: &Rgb, diffuse: &Rgb| *material != Rgb::ZERO && *diffuse != Rgb::ZERO;
+    let mut materials = model.materials.iter().map(|item| (&item.args, &item.value));
+    let (args, _) = materials.find(|(_, material)| has_both(&material.ambient, &material.diffuse))?;
+    (model.camera.value.bounces != 0).then(|| {
+        let message = format!("the `ambient` of `{}` counts beside the light of `bounces`", args.name());
+        Fault::warning(None, message).help(
+            "`ambient` stands in for light from everywhere, which `bounces` computes: leave one of them out",
+        )
+    })
+}
+
+/// Warns of emission in a material that is not an object's own.
+fn left_out(model: &Model) -> Option<Fault> {
+    let kinds = [Kind::Object, Kind::Shader].into_iter().flat_map(|kind| model.entities(kind));
+    let found = kinds.into_iter().find_map(|record| {
+        let args = record.args();
+        let mut values = args.values().filter(|(attribute, _)| attribute.name() != "material");
+        values.find_map(|(_, value)| match value {
+            Datum::Material { name, material } if material.emission != Rgb::ZERO => Some(name.to_string()),
+            _ => None,
+        })
+    })?;
+    let message = format!("the `emission` of `{found}` does not count here");
+    Some(Fault::warning(None, message).help("only an object's own `material` gives light by `emission`"))
+}

@@ -1,0 +1,112 @@
+//! Light that goes on from surface to surface by matt ones, where the camera lets light bounce.
+//!
+//! A matt surface of diffuse reflectivity `d` returns `d / pi` times the integral of the light that reaches it, times
+//! the cosine of its angle. Lamps and skies that light are met by aim: they are [direct light](super::direct_light).
+//! What comes from other surfaces is met by one ray in a direction that the sample draws with a density of the cosine
+//! over pi, so that its light counts `d` times. The ray counts neither lamps nor skies again, nor ambient light, which
+//! stands in for light from everywhere. Shadow rays pass through glass in straight lines, so lamps behind glass are met
+//! by aim, too; after a mirror, no aim is possible, and what shines there counts.
+
+use super::context::{ShadingScratch, Tracer};
+use super::draws::RIM_POINTS;
+use super::ray_group::RayGroup;
+use super::surface::Surface;
+use crate::observer::{RayKind, TraceObserver};
+use glam::{DVec2, DVec3};
+use tabray_world::directions::by_cosine;
+use tabray_world::material::Rgb;
+use tabray_world::scene::kind::Kind;
+use tabray_world::scene::model::Object;
+
+/// The light that counts where a ray ends, besides what it passes on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum CountedLight {
+    /// All: the ray shows what the viewer sees.
+    #[default]
+    All,
+    /// The emission of surfaces: the ray leaves a matt surface, where lamps and skies are met by aim.
+    Emission,
+    /// Also lamps and skies that light: the ray leaves a matt surface by a mirror.
+    EmissionAndLamps,
+}
+
+impl CountedLight {
+    /// Returns what counts for a ray that continues from one of these.
+    pub fn after(self, kind: RayKind) -> Self {
+        match kind {
+            RayKind::Scattered => Self::Emission,
+            RayKind::Reflected if self == Self::Emission => Self::EmissionAndLamps,
+            _ => self,
+        }
+    }
+}
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Returns the light that an object's surface gives of itself to the rays of the current packet, besides its
+    /// ambient light; `None` where it also shows that.
+    pub(super) fn emitted(&self, object: &Object) -> Option<Rgb> {
+        let is_lamp = object.args.entity().kind() == Kind::Light;
+        match self.counted {
+            CountedLight::All => None,
+            CountedLight::EmissionAndLamps if is_lamp => None,
+            _ => Some(object.material.emission),
+        }
+    }
+
+    /// Tells whether rays of the current packet that hit nothing see the background.
+    pub(super) fn sees_background(&self) -> bool {
+        match self.counted {
+            CountedLight::All => true,
+            CountedLight::Emission => false,
+            CountedLight::EmissionAndLamps => {
+                // The last light is the background, if it lights.
+                self.model.lights.last().is_some_and(|light| light.args.entity().kind() == Kind::Background)
+            }
+        }
+    }
+
+    /// Computes the diffuse reflectivities where light may go on from a packet's hits on an object by its matt surface.
+    /// Returns whether any is not 0.
+    pub(super) fn scatters(&self, group: &RayGroup, shading: &mut ShadingScratch) -> bool {
+        let ShadingScratch { surface, diffuse, .. } = shading;
+        let Object { material, shader, .. } = &self.model.objects[surface.index];
+        if self.plan.camera.bounces == 0 || material.transparency == 1.0 || self.scratch.samples.is_empty() {
+            return false;
+        }
+        let count = group.padded();
+        match surface.look {
+            Some(look) => {
+                diffuse.fill(count, look.diffuse);
+                look.diffuse != Rgb::ZERO
+            }
+            None => shader.diffuses(self.cpu, material, surface.points(count), diffuse.resized(count)),
+        }
+    }
+
+    /// Returns the direction in which the sample of a ray follows the light that reaches its hit, after `depth` rays
+    /// of its path; `None` where the surface is seen from a side that no light reaches.
+    pub(super) fn scattered(
+        &mut self,
+        group: &RayGroup,
+        surface: &Surface,
+        lane: usize,
+        depth: u32,
+    ) -> Option<DVec3> {
+        let normal = surface.normals.get(lane);
+        if normal.dot(group.dir.get(lane)) >= 0.0 {
+            return None;
+        }
+        let camera = group.camera[lane];
+        let sample = self.scratch.samples.get(usize::from(camera))?;
+        let draw = if self.scratch.are_probes {
+            DVec2::new(0.5, f64::from(sample.pixel) / RIM_POINTS)
+        } else {
+            sample.on_scattering(depth)
+        };
+        if self.scratch.path_hashes.is_on {
+            self.scratch.path_hashes.see_facet(camera, draw);
+        }
+        let dir = by_cosine(normal, draw);
+        surface.bent_from(lane).is_none_or(|geometric| dir.dot(geometric) > 0.0).then_some(dir)
+    }
+}

@@ -1,0 +1,99 @@
+//! Light that goes on from surface to surface.
+
+use crate::common::model;
+use glam::DVec3;
+use tabray::render::plan::Plan;
+use tabray::render::trace;
+use tabray::tools::threads::renderer_with;
+
+/// Returns the mean of an image's pixels, before they become bytes.
+fn mean(text: &str) -> DVec3 {
+    let model = model(text);
+    let (plan, [width, height]) = (Plan::new(&model), model.camera.value.pixels);
+    let pixels = (0..width * height).map(|index| trace::pixel(&plan, index % width, index / width));
+    pixels.sum::<DVec3>() / (width * height) as f64
+}
+
+#[test]
+fn a_closed_ball_shows_the_sum_of_all_bounces() {
+    for (bounces, samples) in [(0, 4), (1, 1), (3, 4), (12, 1)] {
+        let ball = format!(
+            "look_at eye {{ pixeldim 5 4 position 0.3 0.2 0.1 target 0 0 1 samples {samples} bounces {bounces} }}
+             material glow {{ diffuse 0.5 0.25 0 emission 0.2 0.1 0.05 }}
+             sphere ball {{ material glow center 0 0 0 radius 2 }}"
+        );
+        let sum = |albedo: f64| (0..=bounces).map(|bounce| albedo.powi(bounce)).sum::<f64>();
+        let right = DVec3::new(0.2 * sum(0.5), 0.1 * sum(0.25), 0.05);
+        let seen = mean(&ball);
+        assert!((seen - right).abs().max_element() < 1e-4, "{bounces}: {seen} for {right}");
+    }
+}
+
+/// A matt floor under something that shines.
+fn floor(bounces: u32, shines: &str) -> String {
+    format!(
+        "look_at eye {{ pixeldim 6 4 position 0 1 4 target 0 0 0 angle 20 samples 1024 bounces {bounces} }}
+         material matt {{ diffuse 0.8 0.6 0.4 }}
+         fplane floor {{ material matt point -9 0 9 normal 0 1 0 xdir 1 0 0 dimensions 18 18 }}
+         {shines}"
+    )
+}
+
+#[test]
+fn a_panel_that_emits_lights_a_floor_as_a_lamp_does() {
+    let by_aim = mean(&floor(
+        0,
+        "area_light lamp { location 0.5 2 0 target 0.5 0 0 dimensions 2 1 emissivity 3 3 3 visible no }",
+    ));
+    let by_chance = mean(&floor(
+        1,
+        "material glow { emission 3 3 3 }
+         fplane lamp { material glow point -0.5 2 -0.5 normal 0 -1 0 xdir 1 0 0 dimensions 2 1 }",
+    ));
+    assert!(((by_chance - by_aim) / by_aim).abs().max_element() < 0.02, "{by_chance} for {by_aim}");
+}
+
+#[test]
+fn a_mirror_throws_a_lamp_s_light_on_a_floor() {
+    let lamp = |name: &str, x: f64| {
+        format!(
+            "area_light {name} {{ location {x} 2 0 target {x} 0 0 dimensions 1 1 emissivity 3 3 3 visible no }}"
+        )
+    };
+    let both = mean(&floor(0, &format!("{} {}", lamp("one", -1.0), lamp("other", 5.0))));
+    let visible = lamp("one", -1.0).replace(" visible no", "");
+    let mirror = "metal chrome { colour 1 1 1 }
+                  fplane mirror { material chrome point 2 -1 -99 normal -1 0 0 xdir 0 0 1 dimensions 198 99 }";
+    let thrown = mean(&floor(1, &format!("{visible} {mirror}")));
+    assert!(((thrown - both) / both).abs().max_element() < 0.01, "{thrown} for {both}");
+}
+
+#[test]
+fn lamps_and_skies_are_counted_once() {
+    // A single matt floor has no other surface to receive light from.
+    for shines in [
+        "area_light lamp { location 0 2 0 target 0 0 0 dimensions 2 2 emissivity 3 3 3 }",
+        "sphere_light lamp { location 0 3 0 radius 1 emissivity 3 3 3 }",
+        "sky day { lights yes }",
+        "background grey { colour 0.5 0.5 0.5 }",
+    ] {
+        assert_eq!(mean(&floor(3, shines)), mean(&floor(0, shines)), "{shines}");
+    }
+}
+
+#[test]
+fn ambient_light_is_seen_but_lights_nothing() {
+    let wall = "material bright { ambient 5 5 5 }
+                fplane wall { material bright point -9 0 -2 normal 0 0 1 xdir 1 0 0 dimensions 18 9 }";
+    let sun = "sun light { direction 0 1 0 emissivity 1 1 1 }";
+    assert_eq!(mean(&floor(2, &format!("{wall} {sun}"))), mean(&floor(0, &format!("{wall} {sun}"))));
+}
+
+#[test]
+fn bounces_give_the_same_bytes_on_any_number_of_threads() {
+    let text = floor(4, "sky day { lights yes } sphere ball { material matt center 0 0.5 0 radius 0.5 }");
+    let model = model(&text.replace("samples 1024", "samples 5"));
+    let [one, three] =
+        [1, 3].map(|threads| renderer_with(threads).expect("threads").picture(&Plan::for_picture(&model)));
+    assert_eq!(one, three);
+}
