@@ -15,6 +15,7 @@ use std::io::{self, BufWriter};
 use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use tabray_core::files::in_held_folder;
 use tabray_core::output::aov::Aov;
 use tabray_core::output::aov_values::Values;
 use tabray_core::output::full_range::FullRange;
@@ -87,7 +88,7 @@ fn run(_: &Registry, args: Args) -> Result<(), Failure> {
             let cannot = |error| {
                 Failure::Failed(format!("cannot remove `{}`: {}", text::shown(path), text::reason(&error)))
             };
-            fs::remove_file(path).map_err(cannot)?;
+            in_held_folder(path).and_then(fs::remove_file).map_err(cannot)?;
         }
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! Image files of any format, decoded to texels within a limit of memory.
 
 use crate::display::Display;
+use crate::exr_file;
 use crate::files::ImageBytes;
 use crate::files::held::SceneFile;
 use crate::texels::Texels;
@@ -13,6 +14,7 @@ use image::{
     Rgb as Texel, Rgb32FImage, RgbImage,
 };
 use std::io::{BufReader, Cursor, Read, Seek};
+use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 
 /// The memory that a decoder may take in addition to the image, in bytes.
@@ -20,7 +22,7 @@ const ASIDE: u64 = 1 << 20;
 
 /// File types that the image reader neither reads nor recognises: their first bytes, the offset of these, and the
 /// name of the type.
-const OTHERS: [(&[u8], usize, &str); 7] = [
+const OTHERS: [(&[u8], usize, &str); 13] = [
     (b"<", 0, "XML, as SVG is"),
     (b"8BPS", 0, "a file of Photoshop"),
     (b"ftyp", 4, "a HEIC, an AVIF or a film"),
@@ -28,6 +30,12 @@ const OTHERS: [(&[u8], usize, &str); 7] = [
     (b"\xff\x0a", 0, "a JPEG XL"),
     (b"jP  ", 4, "a JPEG 2000"),
     (b"%PDF", 0, "a PDF"),
+    (b"%!PS", 0, "PostScript"),
+    (b"gimp xcf", 0, "a file of GIMP"),
+    (b"\xabKTX", 0, "a KTX"),
+    (b"\x0a\x05\x01", 0, "a PCX"),
+    (b"\x01\xda", 0, "an SGI image"),
+    (b"SIMPLE  =", 0, "a FITS"),
 ];
 
 const SEES_THROUGH: &str =
@@ -83,11 +91,24 @@ fn decode_from(
     limits.max_alloc = Some(beside.saturating_add(ASIDE));
     let reader = ImageReader::new(bytes).with_guessed_format();
     let reader = reader.map_err(|error| text::reason(&error))?;
-    let Some(format) = reader.format() else { return Err(other(reader.into_inner())) };
+    let format = reader.format();
     let bytes = reader.into_inner();
+    let Some(format) = format.or_else(|| is_tga(bytes).then_some(ImageFormat::Tga)) else {
+        return Err(other(bytes));
+    };
     if !whole_image::has_end(format, bytes, length).map_err(|error| text::reason(&error))? {
         return Err("it ends early".to_owned());
     }
+    let cannot = |error: ImageError| exr_file::reason_of(&error).unwrap_or_else(|| cannot(error));
+    let is_read = |bytes: &mut dyn ImageBytes| ImageReader::with_format(bytes, format).into_decoder().is_ok();
+    if format == ImageFormat::OpenExr && !is_read(bytes) {
+        let (picture, are_several) = exr_file::read(bytes, most)?;
+        let is_light = display.truncates().is_none();
+        let (texels, mut remarks) = texels(picture, is_light, is_opaque, Orientation::NoTransforms, display);
+        remarks.extend(are_several.then_some("has several layers, and the first of its colours are shown"));
+        return Ok((texels, remarks));
+    }
+    bytes.rewind().map_err(|error| text::reason(&error))?;
     let mut reader = ImageReader::with_format(bytes, format);
     reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(cannot)?;
@@ -103,7 +124,9 @@ fn decode_from(
     if decoder.total_bytes().saturating_add(beside) > most {
         return Err(too_much());
     }
-    let picture = DynamicImage::from_decoder(decoder).map_err(cannot)?;
+    // A decoder that panics, as that of TIFF does at tiles of separate planes, has met what it does not read.
+    let decoded = panic::catch_unwind(AssertUnwindSafe(|| DynamicImage::from_decoder(decoder)));
+    let picture = decoded.map_err(|_| text::not_read(format))?.map_err(cannot)?;
     Ok(texels(picture, is_light, is_opaque, orientation, display))
 }
 
@@ -125,6 +148,7 @@ fn beside_decoded(
     // These decoders have no limits of their own.
     let aside = match format {
         ImageFormat::Jpeg | ImageFormat::WebP => length + 6 * pixels,
+        ImageFormat::Tga => length,
         _ => 0,
     };
     ((copies + turned) * pixels).saturating_add(aside)
@@ -167,6 +191,23 @@ fn texels(
 fn row_of_png(head: &[u8]) -> Option<u64> {
     let width = head.strip_prefix(b"\x89PNG\r\n\x1a\n")?.get(8..12)?;
     Some(8 * u64::from(u32::from_be_bytes(width.try_into().ok()?)))
+}
+
+/// Tells whether a file begins as a TGA, which has no mark of its own: by its numbers, of which each has few values.
+fn is_tga(bytes: &mut dyn ImageBytes) -> bool {
+    let mut head = [0; 18];
+    let is_read = bytes.rewind().and_then(|()| bytes.read_exact(&mut head)).is_ok();
+    let [_, map, kind, _, _, _, _, entry, _, _, _, _, w, w2, h, h2, depth, descriptor] = head;
+    let is_mapped = matches!(kind, 1 | 9);
+    is_read
+        && matches!(kind, 1..=3 | 9..=11)
+        && matches!((map, entry), (0, 0) | (1, 15 | 16 | 24 | 32))
+        && (map == 1 || !is_mapped)
+        && matches!(depth, 8 | 15 | 16 | 24 | 32)
+        && [w, w2] != [0; 2]
+        && [h, h2] != [0; 2]
+        && descriptor & 0xc0 == 0
+        && descriptor & 0x0f <= 8
 }
 
 /// Names the type of a file that the image reader does not know.

@@ -22,6 +22,7 @@ mod cutout;
 pub mod directions;
 pub mod display;
 pub mod emitter;
+mod exr_file;
 pub mod files;
 pub mod geometry;
 pub mod hittable;

@@ -1,8 +1,8 @@
 //! Small helpers for the text of messages: guesses at misspelt words, lists of words, reasons, and JSON.
 
 use crate::files;
-use image::ImageError;
 use image::error::ImageFormatHint;
+use image::{ImageError, ImageFormat};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -168,10 +168,30 @@ pub fn quoted(word: &OsStr) -> String {
     }
 }
 
+/// Kinds of files by the extensions of their names. None is meant by the name of another: `knot.obj` names `knot.mtl`,
+/// `knot.gltf` names `knot.bin`.
+const KINDS: [&[&str]; 5] = [
+    &["ray", "toml", "txt"],
+    &["obj", "ply", "stl", "gltf", "glb"],
+    &["mtl"],
+    &["bin"],
+    &["png", "jpg", "jpeg", "ppm", "pgm", "bmp", "tif", "tiff", "tga", "webp", "gif", "hdr", "exr", "pfm"],
+];
+
 /// Returns the name of the file in the same folder that was probably meant by the path of a missing file.
 pub fn nearest_file(path: &Path) -> Option<String> {
+    let kind = |name: &Path| {
+        let ending = name.extension()?.to_str()?.to_lowercase();
+        KINDS.iter().position(|kind| kind.contains(&&ending[..]))
+    };
+    let wanted = kind(path);
+    let may_be_meant = |name: &String| match (wanted, kind(Path::new(name))) {
+        (Some(wanted), Some(kind)) => kind == wanted,
+        _ => true,
+    };
     let entries = files::read_dir(path.parent().unwrap_or(Path::new(""))).ok()?.filter_map(Result::ok);
-    let mut names: Vec<_> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names: Vec<_> = names.filter(may_be_meant).collect();
     // A folder lists its files in any order.
     names.sort_unstable();
     nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_owned)
@@ -192,16 +212,19 @@ pub fn reason(error: &io::Error) -> String {
 /// The message about a file that is not an image.
 pub const NO_IMAGE: &str = "it is not an image that can be read";
 
+/// The message about a file of a format that is not read, or not in all its kinds.
+pub(super) fn not_read(format: ImageFormat) -> String {
+    let name = format.extensions_str().first().unwrap_or(&"").to_uppercase();
+    let what = if format.reading_enabled() { " of a kind" } else { "" };
+    format!("it is a {name}{what}, which is not read: save it as PNG")
+}
+
 /// Returns why a file could not be read as an image.
 pub fn picture_reason(error: &ImageError) -> String {
     match error {
         ImageError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => reason(error),
         ImageError::Unsupported(error) => match error.format_hint() {
-            ImageFormatHint::Exact(format) => {
-                let name = format.extensions_str().first().unwrap_or(&"").to_uppercase();
-                let what = if format.reading_enabled() { " of a kind" } else { "" };
-                format!("it is a {name}{what}, which is not read: save it as PNG")
-            }
+            ImageFormatHint::Exact(format) => not_read(format),
             _ => NO_IMAGE.to_owned(),
         },
         ImageError::Limits(_) => "it is too large".to_owned(),
@@ -219,6 +242,14 @@ pub fn and(words: &[&str]) -> String {
     match words {
         [words @ .., last] if !words.is_empty() => format!("{} and {last}", words.join(", ")),
         words => words.concat(),
+    }
+}
+
+/// Returns the plural of a noun: `methods`, `choices of materials`.
+pub fn plural(noun: &str) -> String {
+    match noun.split_once(" of ") {
+        Some((noun, rest)) => format!("{noun}s of {rest}"),
+        None => format!("{noun}s"),
     }
 }
 

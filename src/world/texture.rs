@@ -225,9 +225,14 @@ mod tests {
     #[test]
     fn images_of_all_formats_are_read_whatever_their_names() {
         let folder = TempDir::new().expect("a folder");
-        for format in
-            [ImageFormat::Png, ImageFormat::Pnm, ImageFormat::Bmp, ImageFormat::Tiff, ImageFormat::WebP]
-        {
+        for format in [
+            ImageFormat::Png,
+            ImageFormat::Pnm,
+            ImageFormat::Bmp,
+            ImageFormat::Tiff,
+            ImageFormat::WebP,
+            ImageFormat::Tga,
+        ] {
             let texture = texture(&folder, "a.jpg", &written(format));
             assert_eq!(bytes_at(&texture, [2, 1]), [100, 90, 200], "{format:?}");
             assert!(texture.remarks().is_empty());
@@ -250,7 +255,7 @@ mod tests {
         }
     }
 
-    /// Formats with an end show it. Those of lines of numbers have none.
+    /// A text of numbers has no end, but a number of them.
     #[test]
     fn a_cut_image_is_refused_or_shows_the_same_texels() {
         const LENGTHS: usize = 150;
@@ -266,6 +271,7 @@ mod tests {
             ImageFormat::Pnm,
             ImageFormat::Hdr,
             ImageFormat::OpenExr,
+            ImageFormat::Tga,
         ] {
             let mut bytes = io::Cursor::new(Vec::new());
             let picture = DynamicImage::ImageRgb8(picture.clone());
@@ -274,15 +280,20 @@ mod tests {
                 _ => picture.write_to(&mut bytes, format),
             }
             .expect("an image");
-            let bytes = bytes.into_inner();
+            cut(&folder, format, &bytes.into_inner());
+        }
+        let numbers: String = picture.iter().map(|channel| format!("{channel} ")).collect();
+        cut(&folder, ImageFormat::Pnm, format!("P3 40 30 255\n{numbers}").as_bytes());
+
+        fn cut(folder: &TempDir, format: ImageFormat, bytes: &[u8]) {
             let texels = |bytes: &[u8]| {
-                let texture = texture(&folder, "a", bytes);
+                let texture = texture(folder, "a", bytes);
                 texture.load().is_ok().then(|| {
                     let all = (0..30).flat_map(|y| (0..40).map(move |x| [x, y]));
                     all.map(|at| bytes_at(&texture, at)).collect::<Vec<_>>()
                 })
             };
-            let whole = texels(&bytes).unwrap_or_else(|| panic!("{format:?} is not read"));
+            let whole = texels(bytes).unwrap_or_else(|| panic!("{format:?} is not read"));
             for cut in 0..LENGTHS {
                 let length = bytes.len() * cut / LENGTHS;
                 if let Some(shown) = texels(&bytes[..length]) {

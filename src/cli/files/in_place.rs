@@ -1,10 +1,11 @@
 //! Replaces the contents of a file that must remain the same file: one that has several names, or whose owner another file
 //! cannot have.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, Read};
 use std::os::unix::fs::{FileExt, MetadataExt, fchown};
 use std::path::Path;
+use tabray_core::files::{Access, open_any};
 
 /// Gives a new file the owner and the group of another, as far as the system lets this user do so.
 pub fn give_owner(new: &File, old: &Path) -> io::Result<()> {
@@ -24,7 +25,7 @@ pub fn must_remain(old: &Path, new: &File) -> io::Result<bool> {
 /// Writes a text to a file in one step, over the old one. Where the text is shorter, line breaks follow it until the file is
 /// cut off; a program that is killed in between leaves them. If the disk fails, the old contents are written back.
 pub fn write(path: &Path, text: &[u8]) -> io::Result<()> {
-    let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+    let mut file = open_any(path, Access::Both)?;
     let mut old = Vec::new();
     file.read_to_end(&mut old)?;
     reserve(&file, text.len())?;

@@ -15,7 +15,7 @@ use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use tabray_core::files::refuse_outside;
+use tabray_core::files;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::picture::Format;
 use tabray_core::scene::model::{Item, Model};
@@ -102,7 +102,7 @@ pub fn append_to_path(path: &Path, end: impl AsRef<OsStr>) -> PathBuf {
 
 /// Makes a folder and its parents, where they do not exist.
 pub fn create_folder(path: &Path) -> Result<(), Failure> {
-    refuse_outside(path).and_then(|()| fs::create_dir_all(path)).map_err(|error| {
+    files::create_folder(path).map_err(|error| {
         let reason = match error.kind() {
             io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
             _ => text::reason(&error),

@@ -1,12 +1,12 @@
 //! Paths that lead to pipes and devices, or to the same file as others.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
-use tabray_core::files::refuse_outside;
+use tabray_core::files::{Access, open_any, refuse_outside};
 
 /// The time that a program may take to open the other end of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Those of the system, and an error where no program writes to the pipe.
 pub fn open_stream(path: &Path) -> io::Result<File> {
     refuse_outside(path)?;
-    patiently(path, "writes to", OpenOptions::new().read(true))
+    patiently(path, "writes to", Access::Stream)
 }
 
 /// Opens a device or a pipe to write to it. At a pipe it waits up to 5 s for a program to read.
@@ -26,19 +26,19 @@ pub fn open_stream(path: &Path) -> io::Result<File> {
 /// Those of the system, and an error where no program reads the pipe.
 pub fn open_sink(path: &Path) -> io::Result<File> {
     refuse_outside(path)?;
-    patiently(path, "reads", OpenOptions::new().write(true))
+    patiently(path, "reads", Access::Write)
 }
 
 /// Opens a path. At a pipe, this takes no longer than [`PATIENCE`]; `does` says what the program at the other end does with
 /// the pipe.
-fn patiently(path: &Path, does: &str, options: &OpenOptions) -> io::Result<File> {
+fn patiently(path: &Path, does: &str, access: Access) -> io::Result<File> {
     if !is_pipe(path) {
-        return options.open(path);
+        return open_any(path, access);
     }
     let (sender, opened) = mpsc::channel();
-    let (path, options) = (path.to_owned(), options.clone());
+    let path = path.to_owned();
     // If no program ever opens the other end, the thread ends with this process.
-    thread::Builder::new().name("pipe".to_owned()).spawn(move || sender.send(options.open(path)))?;
+    thread::Builder::new().name("pipe".to_owned()).spawn(move || sender.send(open_any(&path, access)))?;
     opened.recv_timeout(PATIENCE).unwrap_or_else(|_| {
         Err(io::Error::other(format!("no program {does} this pipe (waited {} s)", PATIENCE.as_secs())))
     })

@@ -7,7 +7,7 @@ use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
-use tabray_core::files::refuse_outside;
+use tabray_core::files::{held_folder, in_held_folder};
 use tempfile::NamedTempFile;
 
 /// The paths of all files with hidden names, including files that no longer exist.
@@ -40,7 +40,7 @@ pub enum Temporary {
 impl Temporary {
     /// Makes a temporary file, with the permissions of any new file. What killed programs have left in the folder is removed.
     pub fn new(folder: &Path) -> io::Result<Self> {
-        refuse_outside(folder)?;
+        let folder = &held_folder(folder)?;
         #[cfg(unix)]
         left::remove(folder);
         #[cfg(target_os = "linux")]
@@ -73,6 +73,7 @@ impl Temporary {
     /// The contents are on the disk before the file gets its name, and the name is on the disk when this returns.
     pub fn persist(self, target: &Path) -> io::Result<()> {
         self.file().sync_all()?;
+        let target = &in_held_folder(target)?;
         self.name(target)?;
         sync_folder(target)
     }
@@ -96,6 +97,7 @@ impl Temporary {
     /// Gives the file a name as [`persist`](Self::persist) does, but fails if a file has that name already.
     pub fn persist_new(self, target: &Path) -> io::Result<()> {
         self.file().sync_all()?;
+        let target = &in_held_folder(target)?;
         match self {
             #[cfg(target_os = "linux")]
             Self::Unnamed(file) => unnamed::link(&file, target)?,
@@ -117,7 +119,7 @@ fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Res
 
 /// Writes a folder's entry for a file to the disk, where the system supports that: some file systems do not.
 fn sync_folder(target: &Path) -> io::Result<()> {
-    let folder = target.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folder = target.parent().unwrap_or(Path::new("."));
     let cannot = [io::ErrorKind::InvalidInput, io::ErrorKind::PermissionDenied, io::ErrorKind::Unsupported];
     match File::open(folder).and_then(|folder| folder.sync_all()) {
         Err(error) if !cannot.contains(&error.kind()) => Err(error),

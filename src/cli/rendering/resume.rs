@@ -109,7 +109,7 @@ impl ResumedImage {
 
     /// Removes the checkpoint after its image is finished, unless another render that continued from it has done so.
     pub fn remove(self) -> Result<(), Failure> {
-        match fs::remove_file(&self.path) {
+        match files::in_held_folder(&self.path).and_then(fs::remove_file) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
                 let (path, reason) = (text::shown(&self.path), text::reason(&error));
                 Err(Failure::Failed(format!(

@@ -5,14 +5,14 @@ use super::feed::{EventFeed, News};
 use crate::trial_values::{TrialValues, Which};
 use hyper::{Response, StatusCode};
 use sha2::{Digest, Sha256};
-use std::fs;
+use std::io::Read;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tabray_cli::files::output;
 use tabray_cli::process::crash;
 use tabray_cli::process::failure::Failure;
-use tabray_core::text;
+use tabray_core::{files, text};
 use tabray_editor::{self as editor, Text};
 use tabray_lang::reader::{self, ReadOptions};
 use tabray_lang::registry::Registry;
@@ -153,7 +153,11 @@ impl Session {
         is_expected: impl FnOnce(&str) -> bool,
         edited: impl FnOnce(&str) -> Result<String, String>,
     ) -> Result<(), String> {
-        let all = match fs::read(&self.path).map(String::from_utf8) {
+        let bytes = files::open(&self.path).and_then(|mut file| {
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes).map(|_| bytes)
+        });
+        let all = match bytes.map(String::from_utf8) {
             Ok(Ok(all)) => all,
             Ok(Err(_)) => return Err("the scene is not in UTF-8: change it in an editor".to_owned()),
             Err(error) => {
