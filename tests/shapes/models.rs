@@ -143,6 +143,75 @@ fn what_a_material_file_lacks_is_told_and_shown_as_the_mesh() {
 }
 
 #[test]
+fn of_an_opacity_and_a_transparency_the_opacity_counts() {
+    let folder = folder(&[("a.obj", "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n")]);
+    for (lines, transparency, is_told) in [
+        ("d 1\nTr 1\n", 0.0, true),
+        ("Tr 1\nd 1\n", 0.0, true),
+        ("Tr 0.25\nd 0.75\n", 0.25, false),
+        ("Tr 0.75\n", 0.75, false),
+        ("d 0.5\nTr 0.25\n", 0.5, true),
+    ] {
+        fs::write(folder.path().join("a.mtl"), format!("newmtl a\n{lines}")).expect("a file");
+        let (model, warnings) = read(folder.path(), "file a.obj materials file");
+        assert_eq!(model.objects[0].material.transparency, transparency, "{lines}");
+        assert_eq!(warnings.contains("not shown: Tr (`d` says otherwise)"), is_told, "{lines}{warnings}");
+    }
+}
+
+/// A material file has no end, but its last line may show that it is not whole.
+#[test]
+fn a_material_file_that_ends_within_a_line_is_told() {
+    let folder = folder(&[("a.obj", "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n")]);
+    for (last, is_told) in [
+        ("Kd 0.5 0.25 0.125", false),
+        ("Kd 0.5 0.25 0.", true),
+        ("Kd 0.5 0.25", true),
+        ("Kd 0.5", true),
+        ("Kd 0.5\n", false),
+        ("Ns 1e", true),
+        ("map_Kd two.", false),
+    ] {
+        fs::write(folder.path().join("a.mtl"), format!("newmtl a\n{last}")).expect("a file");
+        let (_, warnings) = read(folder.path(), "file a.obj materials file");
+        assert_eq!(warnings.contains("not understood: line 2 of `a.mtl`"), is_told, "{last}: {warnings}");
+    }
+}
+
+#[test]
+fn a_file_of_another_kind_is_not_what_a_missing_one_meant() {
+    let obj = "mtllib wall.mtl\nusemtl a\nv 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n";
+    let folder = folder(&[("wall.obj", obj)]);
+    let said = || read(folder.path(), "file wall.obj materials file").1;
+    assert!(said().contains("`wall.mtl` (line 1: no such file or directory)"), "{}", said());
+    fs::write(folder.path().join("wal.mtl"), "").expect("a file");
+    assert!(said().contains("but `wal.mtl` does"), "{}", said());
+}
+
+#[test]
+fn images_of_bumps_are_normals_or_heights_by_what_they_hold() {
+    let folder = folder(&[(
+        "a.obj",
+        "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 4 0 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
+    )]);
+    fs::write(folder.path().join("a.mtl"), "newmtl a\nmap_Bump a.png\n").expect("a file");
+    type Texel = fn(u32, u32) -> [u8; 3];
+    let images: [(Texel, bool); 4] = [
+        (|x, y| [118 + 5 * (x % 4) as u8, 118 + 5 * (y % 4) as u8, 253], true),
+        // Heights in a file of colours, a photograph's colours, and grey.
+        (|x, _| [90 + x as u8, 90 + x as u8, 92 + x as u8], false),
+        (|x, y| [200, 120 + x as u8, 40 + y as u8], false),
+        (|x, _| [10 * x as u8; 3], false),
+    ];
+    for (texel, is_normals) in images {
+        let image = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb(texel(x, y)));
+        image.save(folder.path().join("a.png")).expect("an image");
+        let (_, warnings) = read(folder.path(), "file a.obj materials file");
+        assert_eq!(!warnings.contains("map_Bump (an image of heights)"), is_normals, "{warnings}");
+    }
+}
+
+#[test]
 fn colours_of_vertices_are_blended_between_them() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
         property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n\
@@ -206,4 +275,44 @@ fn a_scene_is_read_from_the_files_that_its_models_name() {
         named("file wall.obj materials file"),
         ["wall.obj", "my looks.mtl", "other.mtl", "images/two colours.png"]
     );
+}
+
+/// A square whose corners have texture coordinates for each face, as MeshLab and OpenMVS write them.
+const TEXTURED: &str = "ply\nformat ascii 1.0\ncomment TextureFile images/two colours.png\nelement vertex 4\nproperty float x\n\
+    property float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\n\
+    property list uchar float texcoord\nproperty int texnumber\nend_header\n0 0 0\n4 0 0\n4 4 0\n0 4 0\n\
+    4 0 1 2 3 8 0 0 1 0 1 1 0 1 0\n3 0 1 2 6 0 0 1 0 1 1 7\n";
+
+#[test]
+fn a_ply_has_images_by_the_corners_of_its_faces() {
+    let text = folder(&[("wall.ply", TEXTURED)]);
+    let (model, warnings) = read(text.path(), "file wall.ply materials file");
+    // The second face covers the first one, and names an image that there is not.
+    assert!(!warnings.contains("without materials and colours"), "{warnings}");
+    let of_obj = folder(&[
+        (
+            "wall.obj",
+            "mtllib wall.mtl\nusemtl a\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n",
+        ),
+        ("wall.mtl", "newmtl a\nmap_Kd images/two colours.png\n"),
+    ]);
+    let (other, _) = read(of_obj.path(), "file wall.obj materials file");
+    for at in [[0.5, 3.0, 0.0], [1.0, 3.5, 0.0], [0.25, 1.5, 0.0]] {
+        assert_eq!(look(&model, at), look(&other, at), "{at:?}");
+    }
+    let missing = folder(&[("wall.ply", &TEXTURED.replace("two colours", "none"))]);
+    let (_, warnings) = read(missing.path(), "file wall.ply materials file");
+    assert!(warnings.contains("images cannot be read: `images/none.png` (line 3: "), "{warnings}");
+}
+
+#[test]
+fn a_ply_has_colours_of_faces() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+        end_header\n0 0 0\n4 0 0\n4 4 0\n0 4 0\n3 0 1 2 128 0 0\n3 0 2 3 0 64 0\n";
+    let folder = folder(&[("wall.ply", text)]);
+    let (model, warnings) = read(folder.path(), "file wall.ply materials file");
+    assert!(warnings.is_empty(), "{warnings}");
+    assert_eq!(look(&model, [3.0, 1.0, 0.0])[1], [0.0625, 0.0, 0.0]);
+    assert_eq!(look(&model, [1.0, 3.0, 0.0])[1], [0.0, 0.0625, 0.0]);
 }

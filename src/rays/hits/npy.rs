@@ -142,6 +142,21 @@ mod tests {
     }
 
     #[test]
+    fn a_cut_array_is_refused() {
+        const LENGTHS: usize = 150;
+        let head = "{'descr': '<f8', 'fortran_order': False, 'shape': (9, 6), }\n";
+        let array = array(head, &[0; 9 * 6 * 8]);
+        let is_read = |bytes: &[u8]| {
+            rows(bytes).is_ok_and(|mut rows| std::iter::from_fn(|| rows.next()).all(|row| row.is_ok()))
+        };
+        assert!(is_read(&array));
+        for cut in 0..LENGTHS {
+            let length = array.len() * cut / LENGTHS;
+            assert!(!is_read(&array[..length]), "{length} of {} bytes", array.len());
+        }
+    }
+
+    #[test]
     fn what_is_no_array_of_rays_is_refused_with_the_reason() {
         for (head, says) in [
             ("{'descr': '<i8', 'fortran_order': False, 'shape': (1, 6), }", "these are '<i8'"),

@@ -105,6 +105,11 @@ pub(super) fn each_line(text: &[u8], mut each: impl FnMut(usize, &[u8]) -> Resul
     })
 }
 
+/// Tells whether a text ends within a number, as far as that can be seen.
+pub(super) fn ends_within_number(text: &[u8]) -> bool {
+    matches!(text.last(), Some(b'.' | b'e' | b'E' | b'+' | b'-' | b'/'))
+}
+
 /// Tells whether a byte is white space, including a vertical tab.
 pub(super) fn is_blank(byte: &u8) -> bool {
     matches!(byte, b' ' | b'\t'..=b'\r')

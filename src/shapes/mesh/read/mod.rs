@@ -81,7 +81,7 @@ fn model(mut bytes: Vec<u8>, ending: &str, folder: &Path, budget: &MemoryBudget)
     }
     let mut model = match format {
         Format::Obj => obj::read(bytes, folder, budget),
-        Format::Ply => ply::read(bytes, budget),
+        Format::Ply => ply::read(bytes, folder, budget),
         Format::Stl => stl::read(bytes, budget),
         Format::Gltf => gltf::read(bytes, folder, budget),
     }?;

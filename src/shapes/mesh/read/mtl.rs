@@ -4,7 +4,7 @@ use super::blocks::{self, Words, words};
 use super::finish::{Finish, Map, Mask};
 use super::model::{MemoryBudget, Model, Remark};
 use super::textures::{Textures, first_of};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::path::Path;
@@ -137,6 +137,9 @@ fn text_of(path: &Path) -> Result<Vec<u8>, String> {
 #[derive(Default)]
 struct Raw {
     finish: Finish,
+    /// The opacity that `d` gives, and the transparency that `Tr` gives.
+    opacity: Option<f64>,
+    transparency: Option<f64>,
     illumination: f64,
     mirror: Option<Rgb>,
     shininess: f64,
@@ -149,6 +152,14 @@ impl Found {
     /// Reads the text of a material file with this name.
     fn read(&mut self, bytes: &[u8], file: &str, textures: &mut Textures) {
         let mut current: Option<(String, Raw)> = None;
+        // A colour may be one number, but where the last line has no end, two may be missing.
+        let is_cut = |keyword: &str, line: &[u8], words: &Words| {
+            let is_last = line.as_ptr_range().end == bytes.as_ptr_range().end;
+            let is_colour = matches!(keyword, "Ka" | "Kd" | "Ks" | "Ke");
+            let is_number = is_colour || matches!(keyword, "d" | "Tr" | "Ni" | "Ns" | "Pr" | "Pm" | "illum");
+            is_last
+                && (is_number && blocks::ends_within_number(line) || is_colour && words.clone().count() == 1)
+        };
         for (index, line) in blocks::lines(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).enumerate() {
             let mut words = words(line);
             let Some(keyword) = words.next().and_then(|word| str::from_utf8(word).ok()) else { continue };
@@ -163,7 +174,9 @@ impl Found {
                 if !KNOWN.contains(&keyword) {
                     // Other words may be names from other programs.
                     self.unseen.insert(text::abridged(keyword).into_owned());
-                } else if raw.read(keyword, words, &place, textures, &mut self.unseen).is_none() {
+                } else if is_cut(keyword, line, &words)
+                    || raw.read(keyword, words, &place, textures, &mut self.unseen).is_none()
+                {
                     self.wrong.push(place);
                 }
             }
@@ -203,9 +216,9 @@ impl Raw {
                 if words.clone().next() == Some(b"-halo") {
                     words.next();
                 }
-                finish.transparency = 1.0 - number(&mut words)?.clamp(0.0, 1.0);
+                self.opacity = Some(number(&mut words)?.clamp(0.0, 1.0));
             }
-            "Tr" => finish.transparency = number(&mut words)?.clamp(0.0, 1.0),
+            "Tr" => self.transparency = Some(number(&mut words)?.clamp(0.0, 1.0)),
             "map_Kd" => finish.colours = map(words, place, textures)?.map(|(map, _)| map),
             "map_Ke" => finish.emissions = map(words, place, textures)?.map(|(map, _)| map),
             "map_d" => {
@@ -214,7 +227,7 @@ impl Raw {
             "map_Bump" | "map_bump" | "bump" | "norm" => {
                 let bumps = map(words, place, textures)?;
                 // Programs also write normal maps where the format expects heights.
-                if bumps.as_ref().is_some_and(|(map, _)| keyword != "norm" && is_grey(&map.texture)) {
+                if bumps.as_ref().is_some_and(|(map, _)| keyword != "norm" && !has_normals(&map.texture)) {
                     unseen.insert(format!("{keyword} (an image of heights)"));
                 } else {
                     finish.normals = bumps;
@@ -227,7 +240,8 @@ impl Raw {
 
     /// Returns the appearance of the material, and adds properties that are not rendered to `unseen`.
     fn finish(self, unseen: &mut BTreeSet<String>) -> Finish {
-        let Self { mut finish, illumination, mirror, shininess, roughness, metal, has_index } = self;
+        let Self { mut finish, opacity, transparency, illumination, mirror, shininess, .. } = self;
+        let Self { roughness, metal, has_index, .. } = self;
         if finish.colours.is_some() && finish.colour == Rgb::ZERO {
             // Some programs write black if an image gives the colours.
             finish.colour = Rgb::ONE;
@@ -249,6 +263,10 @@ impl Raw {
                 "Ks and Ns (highlights without mirror images)",
             ),
         }
+        finish.transparency = opacity.map_or(transparency.unwrap_or(0.0), |opacity| 1.0 - opacity);
+        // 3ds Max writes 1 for both of an opaque material.
+        let is_other = |transparency: f64| (transparency - finish.transparency).abs() > 1e-3;
+        hide(transparency.is_some_and(is_other), "Tr (`d` says otherwise)");
         hide(has_index && finish.transparency > 0.0, "Ni");
         finish
     }
@@ -309,14 +327,18 @@ fn map(mut words: Words, place: &str, textures: &mut Textures) -> Option<Option<
     Some(texture.map(|texture| (Map { texture, scale, offset }, bumps)))
 }
 
-/// Tells whether an image is grey.
-fn is_grey(texture: &Arc<Texture>) -> bool {
+/// Tells whether an image holds normals: nearly unit vectors, which point out of the surface on average.
+fn has_normals(texture: &Arc<Texture>) -> bool {
     let [width, height] = texture.size();
-    let mut texels = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
-    texels.all(|[column, row]| {
-        let texel = texture.numbers(column, row);
-        texel.x == texel.y && texel.y == texel.z
-    })
+    let texels = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
+    let (mut sum, mut off) = (DVec3::ZERO, 0.0);
+    for [column, row] in texels {
+        let normal = 2.0 * texture.numbers(column, row) - 1.0;
+        sum += normal;
+        off += (normal.length() - 1.0).abs();
+    }
+    let count = f64::from(width) * f64::from(height);
+    off < 0.2 * count && sum.z > 0.5 * count && sum.truncate().abs().max_element() < 0.3 * count
 }
 
 /// Returns the name that follows `usemtl` or `newmtl`. The name may contain a `#`, as in `Material #25`. A `#` between

@@ -7,7 +7,7 @@ use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, coordinate, sho
 use super::mtl;
 use super::polygons::Polygons;
 use glam::DVec3;
-use memchr::memchr;
+use memchr::{memchr, memrchr};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -91,6 +91,9 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
     };
     let read = |block: &[u8], before| Part::read(block, before, budget);
     blocks::read(bytes, &mut 0, continues, counts, read, take)?;
+    if let Some(within) = ends_within(bytes) {
+        return Err(ReadError::line(blocks::line_ends(bytes) + 1, format!("the file ends within {within}")));
+    }
     let Attributes { normals, uv, .. } = &model.attributes;
     let counts = [model.vertices.len(), uv.values.len(), normals.values.len()];
     for ((ahead, count), [name, _]) in ahead.into_iter().zip(counts).zip(NAMES) {
@@ -112,6 +115,21 @@ pub fn read(bytes: &[u8], folder: &Path, budget: &MemoryBudget) -> Result<Model,
         model.attributes.colours = AtCorners::of_vertices(lights(colours, display), &model.faces);
     }
     Ok(model)
+}
+
+/// Returns what a file ends within, as far as its last line shows where that has no end.
+fn ends_within(bytes: &[u8]) -> Option<&'static str> {
+    let last = &bytes[memrchr(b'\n', bytes).map_or(0, |end| end + 1)..];
+    let mut words = words(&last[..memchr(b'#', last).unwrap_or(last.len())]);
+    let least = match words.next()? {
+        b"v" | b"vn" | b"f" => 3,
+        b"vt" => 1,
+        _ => return None,
+    };
+    if last.ends_with(b"\\") || words.count() < least {
+        return Some("a line");
+    }
+    blocks::ends_within_number(last).then_some("a number")
 }
 
 /// The colour of a vertex without one.

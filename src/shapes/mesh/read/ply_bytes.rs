@@ -46,12 +46,13 @@ pub(super) fn read<const BIG: bool>(
             rest = after;
             continue;
         }
-        let (mut given, mut corners) = (Vec::new(), Vec::new());
+        let (mut given, mut corners, mut uv) = (Vec::new(), Vec::new(), Vec::new());
         for index in 0..section.count {
             let byte = place(rest);
             let error = |message| ReadError::byte(byte, message);
             let mut vertex = Vertex::default();
             given.clear();
+            uv.clear();
             for field in &section.fields {
                 match *field {
                     Field::Number(number) => drop(take(&mut rest, number.size()).ok_or_else(early)?),
@@ -59,12 +60,19 @@ pub(super) fn read<const BIG: bool>(
                         vertex[place] =
                             scalar::<BIG>(take(&mut rest, number.size()).ok_or_else(early)?, number);
                     }
-                    Field::List(length, number) | Field::Corners(length, number) => {
+                    Field::List(length, number)
+                    | Field::Corners(length, number)
+                    | Field::Uv(length, number) => {
                         let count = whole::<BIG>(take(&mut rest, length.size()).ok_or_else(early)?, length);
                         let count = usize::try_from(count)
                             .map_err(|_| error(format!("a list of {count} numbers makes no sense")))?;
                         let length = count.checked_mul(number.size()).ok_or_else(early)?;
                         let list = take(&mut rest, length).ok_or_else(early)?;
+                        if matches!(field, Field::Uv(..)) {
+                            budget.holds(section.vertices, model.faces.len() + count).map_err(error)?;
+                            let numbers = list.chunks_exact(number.size());
+                            uv.extend(numbers.map(|bytes| scalar::<BIG>(bytes, number) as f32));
+                        }
                         if matches!(field, Field::Corners(..)) {
                             budget.holds(section.vertices, model.faces.len() + count).map_err(error)?;
                             given.clear();
@@ -84,9 +92,11 @@ pub(super) fn read<const BIG: bool>(
                     section.put(&vertex, &mut model.vertices, &mut model.attributes);
                 }
                 Kind::Face | Kind::Strips => {
+                    let before = model.faces.len();
                     section
                         .add(index, &given, &mut corners, &mut model.faces, &mut polygons)
                         .map_err(error)?;
+                    section.put_face(&vertex, &uv, (given.len(), before), &mut model);
                 }
                 Kind::Other => {}
             }
@@ -107,7 +117,7 @@ impl Section {
     fn size(&self) -> Option<usize> {
         let length = |field: &Field| match *field {
             Field::Number(number) | Field::Vertex(_, number) => Some(number.size()),
-            Field::List(..) | Field::Corners(..) => None,
+            Field::List(..) | Field::Corners(..) | Field::Uv(..) => None,
         };
         // An element without properties has no length.
         self.fields.iter().map(length).sum::<Option<usize>>().filter(|size| *size > 0)

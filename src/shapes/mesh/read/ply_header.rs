@@ -1,17 +1,21 @@
 //! Headers of PLY files: the elements of a file, and their properties that are read.
 
-use super::at_corners::Attributes;
+use super::at_corners::{Attributes, NO_VALUE};
 use super::blocks::{is_blank, words};
-use super::model::{ENDS_EARLY, MAX_VERTICES, ReadError, Wanted, coordinate, shown};
+use super::model::{ENDS_EARLY, MAX_VERTICES, Model, ReadError, Wanted, coordinate, shown};
 use super::polygons::Polygons;
 use glam::DVec3;
 use memchr::memchr;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The names of the property with the corners of a face, as different programs write it.
 const CORNERS: [&str; 3] = ["vertex_indices", "vertex_index", "vertex_indexes"];
 
-/// The names of the numbers of a vertex, in their order.
+/// The names of the property with the texture coordinates of a face's corners.
+const UV_OF_CORNERS: [&str; 2] = ["texcoord", "texture_coordinates"];
+
+/// The names of the numbers of a vertex or a face, in their order.
 const NUMBERS: [&[&str]; NUMBERS_OF_VERTEX] = [
     &["x"],
     &["y"],
@@ -24,6 +28,7 @@ const NUMBERS: [&[&str]; NUMBERS_OF_VERTEX] = [
     &["blue", "diffuse_blue"],
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
+    &["texnumber", "texture_id"],
 ];
 
 /// The ranges of a vertex's coordinates, normal, colour and texture coordinates among its numbers.
@@ -32,13 +37,16 @@ const NORMAL: Range<usize> = 3..6;
 const COLOUR: Range<usize> = 6..9;
 const UV: Range<usize> = 9..11;
 
+/// The place of the number of a face's image.
+const IMAGE: usize = 11;
+
 /// The maximum light of a colour. Products of larger ones may overflow.
 const MAX_LIGHT: f64 = 1e6;
 
-/// The number of numbers that are read of a vertex.
-const NUMBERS_OF_VERTEX: usize = 11;
+/// The number of numbers that are read of a vertex or a face.
+const NUMBERS_OF_VERTEX: usize = 12;
 
-/// The numbers of a vertex.
+/// The numbers of a vertex or a face.
 pub(super) type Vertex = [f64; NUMBERS_OF_VERTEX];
 
 /// The maximum length of a header, in bytes.
@@ -106,10 +114,12 @@ impl Number {
 /// A property of an element. An element has its properties one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Field {
-    /// A number of a vertex, by its index.
+    /// A number of a vertex or a face, by its index.
     Vertex(usize, Number),
     /// The corners of a face: the types of their count, and of their indices.
     Corners(Number, Number),
+    /// The texture coordinates of a face's corners: the types of their count, and of their numbers.
+    Uv(Number, Number),
     /// An unused number.
     Number(Number),
     /// An unused list: the types of its length, and of its values.
@@ -144,6 +154,8 @@ pub(super) struct Header<'h> {
     pub encoding: Encoding,
     pub sections: Vec<Section>,
     pub rest: &'h [u8],
+    /// The names of images, each with its line, as MeshLab and OpenMVS write them.
+    pub images: Vec<(String, usize)>,
     /// The number of the header's lines.
     pub line: usize,
 }
@@ -172,7 +184,7 @@ pub(super) fn header(bytes: &[u8], wanted: Wanted) -> Result<Header<'_>, ReadErr
         Some(at) if first[at] == b'\r' && first.get(at + 1) != Some(&b'\n') => b'\r',
         _ => b'\n',
     };
-    let (mut encoding, mut sections, mut rest) = (None, Vec::<Section>::new(), first);
+    let (mut encoding, mut sections, mut images, mut rest) = (None, Vec::<Section>::new(), Vec::new(), first);
     for line in 1.. {
         let Some(length) = memchr(end, rest) else {
             let is_cut = first.len() == bytes.len();
@@ -214,8 +226,14 @@ pub(super) fn header(bytes: &[u8], wanted: Wanted) -> Result<Header<'_>, ReadErr
                 let vertices = sections.iter().find(|section| section.kind == Kind::Vertex);
                 let vertices = vertices.map_or(0, |section| section.count);
                 sections.iter_mut().for_each(|section| section.vertices = vertices);
+                read_once(&mut sections);
                 may_fit(&sections, bytes.len()).map_err(ReadError::file)?;
-                return Ok(Header { encoding, sections, rest: &bytes[first.len() - rest.len()..], line });
+                let rest = &bytes[first.len() - rest.len()..];
+                return Ok(Header { encoding, sections, rest, images, line });
+            }
+            Some(b"comment") if words.next() == Some(b"TextureFile") => {
+                let name = String::from_utf8_lossy(words.rest.trim_ascii()).into_owned();
+                images.extend((!name.is_empty()).then_some((name, line)));
             }
             Some(word) if line == 1 && !word.eq_ignore_ascii_case(b"ply") => {
                 return Err(error("a PLY begins with the word `ply`".to_owned()));
@@ -243,11 +261,18 @@ impl Section {
             matches!(self.kind, Kind::Face | Kind::Strips)
                 && CORNERS.iter().any(|known| known.as_bytes() == name)
         };
-        let is_wanted = |place: &usize| {
-            self.kind == Kind::Vertex
-                && (COORDINATES.contains(place)
+        let has_looks = self.wanted.materials.is_some();
+        let is_uv = |name: &[u8]| {
+            self.kind == Kind::Face && has_looks && UV_OF_CORNERS.iter().any(|known| known.as_bytes() == name)
+        };
+        let is_wanted = |place: &usize| match self.kind {
+            Kind::Vertex => {
+                COORDINATES.contains(place)
                     || NORMAL.contains(place) && self.wanted.normals
-                    || *place >= COLOUR.start && self.wanted.materials.is_some())
+                    || (COLOUR.contains(place) || UV.contains(place)) && has_looks
+            }
+            Kind::Face => (COLOUR.contains(place) || *place == IMAGE) && has_looks,
+            Kind::Strips | Kind::Other => false,
         };
         let place = |name: &[u8]| {
             let is_name = |known: &&str| known.as_bytes() == name;
@@ -270,6 +295,7 @@ impl Section {
                         wrong(name, "a list of whole numbers")
                     }
                     Ok((length, number)) if is_corners(name) => Ok(Field::Corners(length, number)),
+                    Ok((length, number)) if is_uv(name) => Ok(Field::Uv(length, number)),
                     Ok((length, number)) => Ok(Field::List(length, number)),
                 }
             }
@@ -326,6 +352,32 @@ impl Section {
         attributes.uv.values.extend(has_uv.then(|| uv(vertex)));
     }
 
+    /// Adds what a face has beside its corners, of which there are `count`, to the triangles before it and its own.
+    pub fn put_face(&self, numbers: &Vertex, uv: &[f32], (count, before): (usize, usize), model: &mut Model) {
+        let Attributes { uv: at, colours, .. } = &mut model.attributes;
+        let add = |list: &mut Arc<Vec<[u32; 3]>>, indices: &[u32]| {
+            let list = Arc::make_mut(list);
+            list.resize(before, [NO_VALUE; 3]);
+            Polygons::add_values(indices, list);
+        };
+        if self.fields.iter().any(|field| matches!(field, Field::Uv(..))) {
+            let (pairs, first) = (uv.as_chunks::<2>().0, at.values.len() as u32);
+            let is_whole = pairs.len() == count;
+            at.values.extend(is_whole.then_some(pairs).unwrap_or_default());
+            let index = |corner: usize| if is_whole { first + corner as u32 } else { NO_VALUE };
+            add(&mut at.faces, &(0..count).map(index).collect::<Vec<_>>());
+        }
+        if self.has(COLOUR) {
+            add(&mut colours.faces, &vec![colours.values.len() as u32; count]);
+            colours.values.push(self.colour(numbers));
+        }
+        if self.has(IMAGE..IMAGE + 1) {
+            let slot = Some(numbers[IMAGE] + 1.0).filter(|slot| (0.0..=f64::from(u16::MAX)).contains(slot));
+            model.slots.resize(before, 0);
+            model.slots.resize(model.faces.len(), slot.unwrap_or(0.0) as u16);
+        }
+    }
+
     /// Adds the triangles of a face, or of strips, with this index. `corners` is scratch space.
     pub fn add(
         &self,
@@ -357,6 +409,26 @@ impl Section {
             }
         }
         Ok(())
+    }
+}
+
+/// Reads what both vertices and faces have only once: the texture coordinates of faces, and the colours of vertices.
+fn read_once(sections: &mut [Section]) {
+    let has = |kind: Kind, is_field: fn(&Field) -> bool| {
+        sections.iter().any(|section| section.kind == kind && section.fields.iter().any(is_field))
+    };
+    let has_uv = has(Kind::Face, |field| matches!(field, Field::Uv(..)));
+    let has_colours =
+        has(Kind::Vertex, |field| matches!(field, Field::Vertex(place, _) if COLOUR.contains(place)));
+    for section in sections {
+        for field in &mut section.fields {
+            if let Field::Vertex(place, number) = *field
+                && (section.kind == Kind::Vertex && has_uv && UV.contains(&place)
+                    || section.kind == Kind::Face && has_colours && COLOUR.contains(&place))
+            {
+                *field = Field::Number(number);
+            }
+        }
     }
 }
 

@@ -1,10 +1,12 @@
 //! The elements of a PLY as text. Each has a line, but other layouts are accepted.
 
+use super::at_corners::{AtCorners, NO_VALUE};
 use super::blocks::{self, Lines, Words, is_blank, never, words};
 use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, coordinate};
 use super::ply_header::{Field, Kind, Number, Section, Vertex, coordinates, unexpected};
 use super::polygons::Polygons;
 use memchr::memchr_iter;
+use std::sync::Arc;
 
 /// The contents of a block of a text.
 #[derive(Default)]
@@ -12,6 +14,7 @@ struct Part {
     model: Model,
     polygons: Polygons,
     given: Vec<i64>,
+    uv: Vec<f32>,
     corners: Vec<u32>,
 }
 
@@ -70,15 +73,34 @@ fn by_words(
 }
 
 fn add(
-    part: Part,
+    mut part: Part,
     model: &mut Model,
     polygons: &mut Polygons,
     budget: &MemoryBudget,
 ) -> Result<(), ReadError> {
     let before = model.faces.len();
+    // What faces have is counted from the beginning of the part.
+    let (whole, own) = (&mut model.attributes, &mut part.model.attributes);
+    shift(&mut own.uv, &mut whole.uv, before);
+    shift(&mut own.colours, &mut whole.colours, before);
+    if !part.model.slots.is_empty() {
+        model.slots.resize(before, 0);
+        model.slots.append(&mut part.model.slots);
+    }
     model.append(part.model, budget)?;
     polygons.append(part.polygons, before);
     Ok(())
+}
+
+/// Counts the values of a part's faces from those of the whole file, of which some faces came before.
+fn shift<T: Copy>(part: &mut AtCorners<T>, whole: &mut AtCorners<T>, before: usize) {
+    if part.is_empty() {
+        return;
+    }
+    let first = whole.values.len() as u32;
+    let own = Arc::make_mut(&mut part.faces).iter_mut().flatten();
+    own.filter(|corner| **corner != NO_VALUE).for_each(|corner| *corner += first);
+    Arc::make_mut(&mut whole.faces).resize(before, [NO_VALUE; 3]);
 }
 
 fn is_empty(line: &[u8]) -> bool {
@@ -140,7 +162,8 @@ impl Part {
                 return Err(wrong.unwrap_or_else(|| format!("vertex {index} is not finite")));
             }
             Kind::Face | Kind::Strips => {
-                budget.holds(section.vertices, self.model.faces.len() + self.given.len())?;
+                let before = self.model.faces.len();
+                budget.holds(section.vertices, before + self.given.len())?;
                 section.add(
                     index,
                     &self.given,
@@ -148,6 +171,7 @@ impl Part {
                     &mut self.model.faces,
                     &mut self.polygons,
                 )?;
+                section.put_face(&vertex, &self.uv, (self.given.len(), before), &mut self.model);
             }
             Kind::Other => {}
         }
@@ -162,6 +186,7 @@ impl Part {
         vertex: &mut Vertex,
         budget: &MemoryBudget,
     ) -> Option<()> {
+        self.uv.clear();
         for field in &section.fields {
             let word = str::from_utf8(words.next()?).ok()?;
             match *field {
@@ -170,6 +195,11 @@ impl Part {
                 Field::List(..) => {
                     if let Some(last) = word.parse::<usize>().ok()?.checked_sub(1) {
                         words.nth(last)?;
+                    }
+                }
+                Field::Uv(_, number) => {
+                    for _ in 0..word.parse::<usize>().ok()? {
+                        self.uv.push(scalar(str::from_utf8(words.next()?).ok()?, number)? as f32);
                     }
                 }
                 Field::Corners(_, number) => {

@@ -3,7 +3,6 @@
 use super::blocks::{self, Lines, Words, never, words};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, Remark, coordinate, shown};
 use glam::DVec3;
-use std::cmp::Ordering;
 use tabray_world::parallel;
 use tabray_world::text;
 
@@ -32,8 +31,9 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     let Some(announced) = bytes.get(80..HEADER).map(|count| word(count) as usize) else {
         return Err(ReadError::byte(bytes.len(), "the file ends before its number of triangles"));
     };
-    let (mut count, spare) = ((bytes.len() - HEADER) / TRIANGLE, (bytes.len() - HEADER) % TRIANGLE);
-    if count < announced && spare > 0 {
+    let mut count = (bytes.len() - HEADER) / TRIANGLE;
+    // Some programs write the greatest number before they know how many triangles follow.
+    if count < announced && announced <= MAX_VERTICES / 3 {
         let message = format!("the file ends after {count} of {announced} triangles");
         return Err(ReadError::byte(bytes.len(), message));
     }
@@ -56,12 +56,10 @@ pub fn read(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         vertices.truncate(3 * count);
     }
     if found != announced {
-        let help = match count.cmp(&announced) {
-            Ordering::Less => {
-                "all triangles in the file are used; if the file was cut off, copy or export it again"
-            }
-            Ordering::Equal => "the rest of the file is left out, because it holds no triangles",
-            Ordering::Greater => "all triangles in the file are used",
+        let help = if count == announced {
+            "the rest of the file is left out, because it holds no triangles"
+        } else {
+            "all triangles in the file are used"
         };
         let message =
             format!("has a file that announces {} and holds {found}", text::count(announced, "triangle"));
@@ -124,6 +122,15 @@ impl Keyword {
     }
 }
 
+/// A place in a text.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    Solid,
+    Facet,
+    /// After `endsolid`.
+    End,
+}
+
 /// The contents of a block of a text.
 #[derive(Default)]
 struct Part {
@@ -132,14 +139,14 @@ struct Part {
     first: Option<(usize, usize)>,
     /// The number of vertices before the last `endloop`.
     last: usize,
-    /// Whether the block ends within a facet, if a facet begins or ends in it.
-    is_in_facet: Option<bool>,
+    /// The place in which the block ends, if any place begins or ends in it.
+    place: Option<Place>,
 }
 
 fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
     let mut vertices = Vec::new();
     // The number of corners before the current facet.
-    let (mut start, mut is_in_facet) = (0, false);
+    let (mut start, mut place) = (0, Place::Solid);
     let take = |part: Part, line| {
         if let Some((number, count)) = part.first {
             three(vertices.len() - start + count)
@@ -149,14 +156,18 @@ fn in_text(bytes: &[u8], budget: &MemoryBudget) -> Result<Model, ReadError> {
         let count = vertices.len() + part.vertices.len();
         budget.holds(count, count / 3).map_err(ReadError::file)?;
         vertices.extend(part.vertices);
-        is_in_facet = part.is_in_facet.unwrap_or(is_in_facet);
+        place = part.place.unwrap_or(place);
         Ok(())
     };
     blocks::read(bytes, &mut 0, never, |_| 0, |block, _| Part::read(block, budget), take)?;
-    if is_in_facet || vertices.len() != start {
+    if place == Place::Facet || vertices.len() != start {
         return Err(ReadError::line(blocks::line_ends(bytes) + 1, "the file ends within a facet"));
     }
-    finish(vertices, Vec::new())
+    let remark = (place != Place::End).then(|| Remark {
+        message: "has a file without `endsolid` at its end".to_owned(),
+        help: "all facets in the file are used; if the file was cut off, copy or export it again",
+    });
+    finish(vertices, remark.into_iter().collect())
 }
 
 /// Refuses a facet that does not have three vertices.
@@ -201,16 +212,19 @@ impl Part {
                 }
                 // A name may consist of any words. In a file of one line, the first facet follows it.
                 Keyword::Solid | Keyword::EndSolid => {
+                    let is_end = matches!(current, Keyword::EndSolid);
                     let normal = words
                         .by_ref()
                         .skip_while(|word| !word.eq_ignore_ascii_case(b"facet"))
                         .find(|word| word.eq_ignore_ascii_case(b"normal"));
-                    if normal.is_some() && matches!(current, Keyword::Solid) {
-                        self.is_in_facet = Some(true);
-                    }
+                    self.place = Some(match normal {
+                        _ if is_end => Place::End,
+                        Some(_) => Place::Facet,
+                        None => Place::Solid,
+                    });
                 }
-                Keyword::Facet => self.is_in_facet = Some(true),
-                Keyword::EndFacet => self.is_in_facet = Some(false),
+                Keyword::Facet => self.place = Some(Place::Facet),
+                Keyword::EndFacet => self.place = Some(Place::Solid),
                 Keyword::Outer => {}
             }
             keyword = Keyword::next(&mut words);

@@ -23,7 +23,7 @@ macro_rules! readers {
         }
     )*};
 }
-readers!(obj(std::path::Path::new("")) ply() stl());
+readers!(obj(std::path::Path::new("")) ply(std::path::Path::new("")) stl());
 
 /// Makes a budget for a file of this length, with only triangles wanted.
 fn budget(memory: u64, file: u64) -> Result<MemoryBudget, String> {
@@ -180,6 +180,48 @@ fn a_file_that_ends_too_early_is_told() {
         Err(ReadError { at: Some(FilePosition::Byte(283)), message })
     );
     assert!(stl::read(b"").is_err() && ply::read(b"").is_err() && ply::read(b"ply\n").is_err());
+}
+
+#[test]
+fn a_cut_file_with_an_end_is_refused() {
+    const LENGTHS: usize = 150;
+    for (ending, bytes) in [
+        ("ply", ply_bytes(false)),
+        ("ply", ply_bytes(true)),
+        ("stl", stl_bytes("binary")),
+        ("stl", stl_bytes("solid, and binary all the same")),
+        ("glb", gltf::small()),
+    ] {
+        named(ending, &bytes).expect("a whole file");
+        for cut in 0..LENGTHS {
+            let length = bytes.len() * cut / LENGTHS;
+            assert!(named(ending, &bytes[..length]).is_err(), "{ending}, {length} of {} bytes", bytes.len());
+        }
+    }
+}
+
+/// Where the indices have one digit, a cut one is missing.
+#[test]
+fn a_text_that_ends_within_a_line_is_refused_or_told() {
+    let text = obj_text();
+    for length in 0..text.len() {
+        let cut = &text[..length];
+        let last = cut.lines().last().unwrap_or_default();
+        let is_whole = text.lines().any(|line| line == last);
+        assert!(named("obj", cut).is_err() || is_whole, "{length}: {last}");
+    }
+    for (line, within) in [("f 1 2", "a line"), ("f 1/1 2/1 3/", "a number"), ("v 1 2 3.", "a number")] {
+        let message = format!("the file ends within {within}");
+        let told = Err(ReadError { at: Some(FilePosition::Line(9)), message });
+        assert_eq!(named("obj", format!("{text}{line}")), told);
+    }
+    let text = stl_text();
+    let end = text.find("endsolid").expect("its end");
+    for length in 0..end {
+        let is_told = |model: Model| model.remarks[0].message == "has a file without `endsolid` at its end";
+        assert!(named("stl", &text[..length]).map_or(true, is_told), "{length}");
+    }
+    assert_eq!(named("stl", &text).expect("a model").remarks, []);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 #[serde(rename_all = "camelCase", default)]
 pub struct Gltf {
     pub asset: Asset,
+    pub extensions_used: Vec<String>,
     pub extensions_required: Vec<String>,
     pub scene: Option<usize>,
     pub scenes: Vec<Scene>,
@@ -18,6 +19,7 @@ pub struct Gltf {
     pub buffers: Vec<Buffer>,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
+    pub samplers: Vec<Sampler>,
     pub images: Vec<Image>,
     pub cameras: Vec<Camera>,
     pub extensions: Extensions,
@@ -54,6 +56,24 @@ pub struct Node {
 pub struct NodeExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     pub light: Option<NodeLight>,
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub instances: Option<Instances>,
+}
+
+/// Copies of a node's mesh.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Instances {
+    pub attributes: InstanceAttributes,
+}
+
+/// The accessors of the copies' placements.
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "UPPERCASE", default)]
+pub struct InstanceAttributes {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
 }
 
 #[derive(Deserialize)]
@@ -223,6 +243,29 @@ impl Default for Pbr {
     }
 }
 
+/// A material of KHR_materials_pbrSpecularGlossiness.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct SpecularGlossiness {
+    pub diffuse_factor: [f64; 4],
+    pub diffuse_texture: Option<TextureInfo>,
+    pub specular_factor: [f64; 3],
+    pub glossiness_factor: f64,
+    pub specular_glossiness_texture: Option<IgnoredAny>,
+}
+
+impl Default for SpecularGlossiness {
+    fn default() -> Self {
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+            specular_factor: [1.0; 3],
+            glossiness_factor: 1.0,
+            specular_glossiness_texture: None,
+        }
+    }
+}
+
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct TextureInfo {
@@ -253,7 +296,17 @@ pub struct Transform {
 #[serde(default)]
 pub struct Texture {
     pub source: Option<usize>,
+    pub sampler: Option<usize>,
     pub extensions: BTreeMap<String, serde_json::Value>,
+}
+
+/// How an image is read beyond its edges and between its texels, in the numbers of OpenGL.
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Sampler {
+    pub mag_filter: Option<u32>,
+    pub wrap_s: Option<u32>,
+    pub wrap_t: Option<u32>,
 }
 
 #[derive(Default, Deserialize)]

@@ -1,11 +1,12 @@
 //! The materials of glTF.
 
 use super::buffers::{Buffers, data, unescaped};
-use super::json::{self, Gltf, Transform};
+use super::json::{self, Gltf, SpecularGlossiness, Transform};
 use crate::mesh::read::finish::{Finish, Map, Mask};
 use crate::mesh::read::model::{MemoryBudget, Model, Remark};
 use crate::mesh::read::textures::{Textures, first_of};
 use glam::{DVec2, DVec3};
+use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -14,12 +15,18 @@ use tabray_world::text;
 use tabray_world::texture::{CUTOFF, Texture};
 
 /// The material extensions that are rendered, or do not change what is rendered.
-const SHOWN: [&str; 4] = [
+const SHOWN: [&str; 5] = [
+    SPECULAR_GLOSSINESS,
     "KHR_materials_emissive_strength",
     "KHR_materials_transmission",
     "KHR_materials_ior",
     "KHR_materials_specular",
 ];
+
+const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+
+/// The reflectivity of what is no metal.
+const DIELECTRIC: f64 = 0.04;
 
 /// Sets the names of the model's materials and, if wanted, their appearances.
 pub fn furnish(
@@ -45,6 +52,7 @@ pub fn furnish(
         textures: Textures::new(folder, budget),
         unseen: BTreeSet::new(),
         images: Vec::new(),
+        repeats: model.attributes.uv.values.iter().flatten().any(|at| !(0.0..=1.0).contains(at)),
     };
     looks.images.resize(json.images.len(), None);
     for material in &json.materials {
@@ -71,6 +79,8 @@ struct Looks<'f> {
     unseen: BTreeSet<String>,
     /// The images that were read, or `None` inside for those that cannot be.
     images: Vec<Option<Option<Arc<Texture>>>>,
+    /// Whether texture coordinates lie beyond the edges of an image.
+    repeats: bool,
 }
 
 impl Looks<'_> {
@@ -122,7 +132,46 @@ impl Looks<'_> {
             self.unseen.insert("metallicRoughnessTexture (its mean is)".to_owned());
         }
         finish.forge(metal, roughness);
+        if let Some(other) = material.extensions.get(SPECULAR_GLOSSINESS) {
+            let other = SpecularGlossiness::deserialize(other)
+                .map_err(|error| format!("one of its materials is not glTF: {error}"))?;
+            self.by_specular_glossiness(&mut finish, &other, mode)?;
+        }
         Ok(finish)
+    }
+
+    /// Sets what a material of the extension says instead: where its specular colour is brighter than that of what is no
+    /// metal, it is a metal of this colour.
+    fn by_specular_glossiness(
+        &mut self,
+        finish: &mut Finish,
+        material: &SpecularGlossiness,
+        mode: &str,
+    ) -> Result<(), String> {
+        let [red, green, blue, alpha] = material.diffuse_factor;
+        let specular = DVec3::from(material.specular_factor).clamp(DVec3::ZERO, DVec3::ONE);
+        let brightness = specular.max_element();
+        let metal = ((brightness - DIELECTRIC) / (1.0 - DIELECTRIC)).max(0.0);
+        let diffuse = DVec3::new(red, green, blue).clamp(DVec3::ZERO, DVec3::splat(1e6));
+        finish.colours = self.map(material.diffuse_texture.as_ref())?;
+        // With an image of both, the factors say little about either.
+        let (metal, colour) = match &material.specular_glossiness_texture {
+            Some(_) => {
+                self.unseen.insert("specularGlossinessTexture".to_owned());
+                (0.0, diffuse)
+            }
+            None => (metal, diffuse.lerp(specular, metal)),
+        };
+        finish.colour = colour;
+        if mode == "BLEND" {
+            finish.transparency = 1.0 - alpha.clamp(0.0, 1.0);
+        }
+        if mode == "MASK" {
+            let map = finish.colours.clone().filter(|map| map.texture.has_alpha());
+            finish.mask = Mask::new(map, CUTOFF / alpha);
+        }
+        finish.forge(metal, 1.0 - material.glossiness_factor);
+        Ok(())
     }
 
     /// Returns an image as a material uses it, or `None` if it is missing or cannot be read.
@@ -146,6 +195,19 @@ impl Looks<'_> {
         if *rotation != 0.0 {
             self.unseen.insert("the rotation of images".to_owned());
         }
+        let sampler = texture.sampler.and_then(|index| self.json.samplers.get(index));
+        let mut hide = |is_hidden: bool, what: &str| {
+            if is_hidden {
+                self.unseen.insert(what.to_owned());
+            }
+        };
+        let wraps = sampler.map_or([None; 2], |sampler| [sampler.wrap_s, sampler.wrap_t]);
+        let is_other = wraps.into_iter().flatten().any(|wrap| wrap != REPEAT);
+        hide(self.repeats && is_other, "images that do not repeat");
+        hide(
+            sampler.and_then(|sampler| sampler.mag_filter) == Some(NEAREST),
+            "images whose texels are seen as squares",
+        );
         let image = self.json.images.get(source).ok_or_else(|| missing("image", source))?;
         let texture = match &self.images[source] {
             Some(known) => known.clone(),
@@ -174,6 +236,10 @@ impl Looks<'_> {
         })
     }
 }
+
+/// Of OpenGL's numbers, those of what is shown of wrap modes and of what is not shown of filters.
+const REPEAT: u32 = 10497;
+const NEAREST: u32 = 9728;
 
 /// Returns the mean of an image's texels.
 fn mean(texture: &Texture) -> DVec3 {

@@ -9,9 +9,10 @@ mod staging;
 
 use super::at_corners::{AtCorners, NO_VALUE};
 use super::model::{MAX_VERTICES, MemoryBudget, Model, ReadError, Remark, shown};
+use super::textures::first_of;
 use buffers::{Buffers, Elements};
 use glam::{DMat3, DMat4, DQuat, DVec3};
-use json::{Gltf, Node, Primitive};
+use json::{Gltf, InstanceAttributes, Node, Primitive};
 use memchr::memchr_iter;
 use std::path::Path;
 use std::sync::Arc;
@@ -21,7 +22,12 @@ use tabray_world::text;
 pub const MAGIC: &[u8] = b"glTF";
 
 /// The supported extensions among those that a file may require.
-const EXTENSIONS: [&str; 8] = [
+const EXTENSIONS: [&str; 12] = [
+    "EXT_mesh_gpu_instancing",
+    "EXT_texture_webp",
+    "KHR_materials_pbrSpecularGlossiness",
+    // The default materials are shown.
+    "KHR_materials_variants",
     "KHR_texture_transform",
     "KHR_mesh_quantization",
     "KHR_materials_unlit",
@@ -30,6 +36,17 @@ const EXTENSIONS: [&str; 8] = [
     "KHR_materials_ior",
     "KHR_materials_specular",
     "KHR_lights_punctual",
+];
+
+/// The beginnings of the names of extensions that change nothing, or whose uses are told where they are.
+const UNSEEN: [&str; 7] = [
+    "KHR_materials_",
+    "KHR_animation",
+    "KHR_xmp",
+    "KHR_audio",
+    "EXT_structural_metadata",
+    "EXT_mesh_features",
+    "CESIUM_",
 ];
 
 /// The maximum memory of an object of the JSON, in bytes.
@@ -94,10 +111,14 @@ fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) 
     }
     let unread = json.extensions_required.iter().find(|name| !EXTENSIONS.contains(&&name[..]));
     if let Some(name) = unread {
+        let cure = match &name[..] {
+            "KHR_draco_mesh_compression" => "decompress it first, as `gltf-transform cp a.glb b.glb` does",
+            "EXT_meshopt_compression" => "decompress it first, as `gltf-transform cp a.glb b.glb` does",
+            "KHR_texture_basisu" => "save its images as PNG",
+            _ => "export it without, or as OBJ",
+        };
         let name = shown(name.as_bytes());
-        return Err(format!(
-            "it requires the extension `{name}`, which is not read: export it without, or as OBJ"
-        ));
+        return Err(format!("it requires the extension `{name}`, which is not read: {cure}"));
     }
     let buffers = Buffers::read(json, own, folder, budget)?;
     let source = Source { json, buffers: &buffers, budget };
@@ -110,6 +131,15 @@ fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) 
     model.attributes.drop_unused();
     model.files = buffers::files(json, folder);
     looks::furnish(&mut model, json, &buffers, folder, budget)?;
+    let is_told = |name: &&String| {
+        !EXTENSIONS.contains(&&name[..]) && !UNSEEN.iter().any(|begin| name.starts_with(begin))
+    };
+    let untold: Vec<_> = json.extensions_used.iter().filter(is_told).collect();
+    if !untold.is_empty() {
+        let names: Vec<_> = untold.iter().map(|name| format!("`{}`", shown(name.as_bytes()))).collect();
+        let message = format!("has extensions in its file that are not read: {}", first_of(&names));
+        model.remarks.push(Remark { message, help: "what the file has without them is shown" });
+    }
     if left_out > 0 {
         let message =
             format!("leaves out lines or points of its file: {}", text::count(left_out, "primitive"));
@@ -194,6 +224,28 @@ impl<'f> Source<'f> {
     }
 }
 
+impl Source<'_> {
+    /// Returns the matrices of the copies of a mesh.
+    fn copies(self, attributes: &InstanceAttributes) -> Result<Vec<DMat4>, String> {
+        let InstanceAttributes { translation, rotation, scale } = *attributes;
+        let of = |index: Option<usize>, width| {
+            index.map(|index| self.buffers.elements(index, &[width], self.budget)).transpose()
+        };
+        let (translation, rotation, scale) = (of(translation, 3)?, of(rotation, 4)?, of(scale, 3)?);
+        let all = [&translation, &rotation, &scale].map(|elements| elements.as_ref().map(|all| all.count));
+        let count = all.into_iter().flatten().min().unwrap_or(1);
+        let matrix = |index: usize| {
+            own(&Node {
+                translation: translation.as_ref().map(|all| all.get(index)),
+                rotation: rotation.as_ref().map(|all| all.get(index)),
+                scale: scale.as_ref().map(|all| all.get(index)),
+                ..Node::default()
+            })
+        };
+        Ok((0..count).map(matrix).collect())
+    }
+}
+
 /// A model in construction.
 struct Reading<'f> {
     source: Source<'f>,
@@ -208,12 +260,19 @@ impl Reading<'_> {
     /// Adds the mesh of a node, if it has one.
     fn add(&mut self, node: &Node, placement: DMat4) -> Result<(), String> {
         let Some(index) = node.mesh else { return Ok(()) };
+        let copies = match &node.extensions.instances {
+            Some(instances) => self.source.copies(&instances.attributes)?,
+            None => vec![DMat4::IDENTITY],
+        };
         let mesh = self.source.json.meshes.get(index).ok_or_else(|| format!("there is no mesh {index}"))?;
         let is_posed =
             node.skin.is_some() || mesh.primitives.iter().any(|primitive| !primitive.targets.is_empty());
         self.posed += usize::from(is_posed);
-        for primitive in &mesh.primitives {
-            self.primitive(primitive, placement).map_err(|message| format!("in mesh {index}, {message}"))?;
+        for copy in copies {
+            for primitive in &mesh.primitives {
+                self.primitive(primitive, placement * copy)
+                    .map_err(|message| format!("in mesh {index}, {message}"))?;
+            }
         }
         Ok(())
     }

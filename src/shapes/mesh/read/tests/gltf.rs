@@ -173,7 +173,7 @@ fn glb(json: &str, own: &[u8]) -> Vec<u8> {
     bytes
 }
 
-fn small() -> Vec<u8> {
+pub(super) fn small() -> Vec<u8> {
     let json = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
         "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}"#;
@@ -218,4 +218,25 @@ proptest! {
         let at = digits[place % digits.len()];
         let _ = whole("gltf", format!("{}{number}{}{tail}", &head[..at], &head[at + 1..]));
     }
+}
+
+#[test]
+fn copies_are_placed_and_unknown_extensions_are_named() {
+    let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["EXT_mesh_gpu_instancing","EXT_unknown"],
+        "nodes":[{"mesh":0,"translation":[0,0,5],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}"#;
+    let numbers = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let model = named("glb", glb(json, &numbers.map(f32::to_le_bytes).concat())).expect("a model");
+    let corner = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let placed = corner.map(|copy| corner.map(|at| at + copy + 5.0 * DVec3::Z));
+    assert_eq!(corners(&model), placed);
+    assert_eq!(model.remarks[0].message, "has extensions in its file that are not read: `EXT_unknown`");
+    let required = json.replace("extensionsUsed", "extensionsRequired");
+    let said = named("glb", glb(&required, &[])).expect_err("it is not read").message;
+    assert_eq!(
+        said,
+        "it requires the extension `EXT_unknown`, which is not read: export it without, or as OBJ"
+    );
 }
