@@ -39,7 +39,7 @@ use process::failure::report;
 #[cfg(target_os = "linux")]
 use process::interrupt;
 use process::messages::Verbosity;
-use process::{arguments, bounds, color, crash, help, memory, messages, program, progress};
+use process::{arguments, bounds, color, crash, help, memory, messages, program, progress, time_limit};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 use tabray_lang::registry::Registry;
@@ -144,10 +144,16 @@ fn chosen() -> ExitCode {
         Ok(registry) => registry,
         Err(faults) => return refused(faults),
     };
+    let chosen = chosen.map(|(name, matches)| {
+        (Command::named(name).expect("clap knows the registered commands alone"), matches)
+    });
+    if !chosen.is_some_and(|(command, _)| command.keeps_time)
+        && let Err(failure) = time_limit::watch()
+    {
+        return report(&failure);
+    }
     match chosen {
-        Some((name, matches)) => {
-            Command::named(name).expect("clap knows the registered commands alone").run(registry, matches)
-        }
+        Some((command, matches)) => command.run(registry, matches),
         None if io::stdin().is_terminal() => {
             let _ = write!(io::stderr(), "{}", line().render_long_help());
             report(&Failure::AlreadyReported)

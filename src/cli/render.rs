@@ -6,7 +6,7 @@ use crate::command::{Command, Group, Run};
 use crate::files::input::Source;
 use crate::files::output::format_of;
 use crate::files::{folders, input, output, several};
-use crate::options::frames::Frame;
+use crate::options::frames::{Frame, Range};
 use crate::options::named::by_name;
 use crate::options::{cpu, frames, keep, method, samples, set, size, stop, threads};
 use crate::process::failure::Failure;
@@ -81,7 +81,7 @@ Examples:
   tabray render ball.ray -o big.png --part 1/4             # then 2/4 to 4/4, and `merge`";
 
 inventory::submit! {
-    Command::new("render", Group::Rendering, &Run(run)).placed(0, 0)
+    Command::new("render", Group::Rendering, &Run(run)).placed(0, 0).keeps_time()
 }
 
 fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
@@ -130,9 +130,9 @@ fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// Checks, for commands that let others render, that one scene and the options make an image, or frames, and tells
-    /// which; nothing is written.
-    pub fn check(mut self, registry: &Registry) -> Result<bool, Failure> {
+    /// Checks, for commands that let others render, that one scene and the options make an image, or frames, and
+    /// returns which frames; nothing is written.
+    pub fn check(mut self, registry: &Registry) -> Result<Option<Range>, Failure> {
         let [scene] = &self.scenes[..] else { return Err(Failure::AlreadyReported) };
         let scene = scene.clone();
         let path = several::target(self.output.as_deref(), &scene, self.extension())?;
@@ -147,7 +147,6 @@ impl Args {
             format_of(self.format, &path, self.compress)?;
         }
         self.cpu.cpu()?;
-        let is_film = frames.is_some();
         let mut frames = frames.unwrap_or_else(|| vec![Frame { path, sets: Vec::new() }]);
         let last = frames.len() - 1;
         frames.drain(1.min(last)..last);
@@ -159,7 +158,7 @@ impl Args {
             self.size.apply(&mut model.camera.value)?;
             self.refuse_sources(&frame.path, &scene, &model)?;
         }
-        Ok(is_film)
+        Ok(self.frames.frames)
     }
 
     /// Returns the extension of an image whose name derives from its scene's.

@@ -90,7 +90,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if args.colours {
         let proof = colours::prove(&args.of_colours, &renderer, plan, &progress);
         progress.end();
-        return colours::report(&args.of_colours, proof?, &form, picture);
+        return colours::report(proof?, &form, picture);
     }
     let pixels = verify::picture(&renderer, &plan, &|| {
         progress.step();

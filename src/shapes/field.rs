@@ -110,7 +110,7 @@ fn regularity_within(field: &Field, corners: [DVec3; 2], mut operations: u64) ->
 
 /// Returns the number of parts to examine for a change of sign, fewer for a formula of thousands of operations.
 fn parts_of(field: &Field) -> u64 {
-    PARTS.min(OPERATIONS / (field.formula().cost().max(1) * 2))
+    PARTS.min(OPERATIONS / (field.formula().cost_in_box().max(1) * 2))
 }
 
 /// Tells whether a formula is certainly above 0 on all sides of a box.

@@ -332,3 +332,33 @@ fn every_command_that_reads_a_scene_keeps_to_the_limit_on_memory() {
         assert_eq!(names_in(folder.path()), ["balls.ray", "rays.txt"], "{line}");
     }
 }
+
+/// What is not done by then is not shown; a render, a chart and a choice say for themselves what they have.
+#[test]
+fn every_command_that_reads_a_scene_keeps_to_the_limit_on_time() {
+    let folder = folder();
+    let head = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }\n";
+    let balls = "repeat i 1000000 { sphere s { material m center i 2 3 radius 1 } }\n".repeat(2);
+    fs::write(folder.path().join("balls.ray"), format!("{head}{balls}")).expect("a scene");
+    fs::write(folder.path().join("rays.txt"), "0 0 9 0 0 -1\n").expect("a file");
+    for line in [
+        "check balls.ray",
+        "dump balls.ray",
+        "plan balls.ray",
+        "probe balls.ray 1 1",
+        "verify balls.ray",
+        "verify --colours balls.ray",
+        "hits balls.ray rays.txt",
+        "hard balls.ray",
+        "bench balls.ray",
+        "convert balls.ray x.toml",
+        "render balls.ray -o x.png",
+        "farm commands balls.ray -o x.png --parts 2",
+    ] {
+        let mut program = tabray(&folder);
+        let (status, _, said) = outcome(program.args(line.split(' ')).args(["--time-limit", "30ms"]));
+        assert_eq!(status, 130, "{line}: {said}");
+        assert!(said.starts_with("the time limit of 30ms has been reached\n"), "{line}: {said}");
+        assert_eq!(names_in(folder.path()), ["balls.ray", "rays.txt"], "{line}");
+    }
+}

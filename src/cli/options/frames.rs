@@ -2,6 +2,7 @@
 
 use crate::options::number::whole;
 use crate::process::failure::Failure;
+use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use tabray_core::text;
@@ -35,7 +36,13 @@ pub struct Args {
 
 /// The numbers of the first and the last frame.
 #[derive(Clone, Debug)]
-pub struct Range(RangeInclusive<u32>);
+pub struct Range(pub RangeInclusive<u32>);
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}..{}", self.0.start(), self.0.end())
+    }
+}
 
 /// A frame to render.
 #[derive(Debug, PartialEq)]
@@ -46,7 +53,11 @@ pub struct Frame {
     pub sets: Vec<String>,
 }
 
-fn range(text: &str) -> Result<Range, String> {
+/// Reads a range of frames, such as `1..240`.
+///
+/// # Errors
+/// A message for people, if the text is no range.
+pub fn range(text: &str) -> Result<Range, String> {
     let number = |text: &str| text.parse().ok().filter(|number| (0..=MAX_FRAME).contains(number));
     let ends = text.split_once("..").and_then(|(first, last)| number(first).zip(number(last)));
     let ends = ends.filter(|(first, last)| first <= last);

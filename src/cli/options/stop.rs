@@ -3,7 +3,7 @@
 use crate::files::output;
 use crate::process::failure::Failure;
 use crate::process::interrupt::{self, InterruptAction};
-use crate::process::{memory, messages};
+use crate::process::{memory, messages, time_limit};
 use bytesize::ByteSize;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -41,10 +41,6 @@ pub struct Args {
     /// from the beginning. Existing parts and frames are not rendered again
     #[arg(long)]
     pub resume: bool,
-    /// Stop after this time, such as 90s, 5m or 1.5h, like Ctrl-C: write the finished part, and beside it a checkpoint
-    /// for --resume. The time includes reading the scene and writing the image
-    #[arg(long, value_name = "TIME", value_parser = time)]
-    time_limit: Option<Duration>,
 }
 
 /// A limit on a render.
@@ -140,7 +136,7 @@ impl Args {
     pub fn watch(&self) -> Result<Stop, Failure> {
         interrupt::catch(InterruptAction::Exit(NOT_FINISHED))?;
         let stop = Stop::default();
-        let (time_limit, max_memory) = (self.time_limit, memory::chosen());
+        let (time_limit, max_memory) = (time_limit::keep(), memory::chosen());
         if time_limit.is_none() && max_memory.is_none() {
             return Ok(stop);
         }
@@ -211,13 +207,4 @@ impl Args {
         let bytes = ((limit.as_u64() - now - row) / 4).max(strip);
         Ok(usize::try_from(bytes / PIXEL).map_or(BAND, |pixels| pixels.min(BAND)))
     }
-}
-
-/// Reads a time, such as `90s` or `1.5h`.
-///
-/// # Errors
-/// A message for people, if the text is no time above 0.
-pub fn time(text: &str) -> Result<Duration, String> {
-    let time = humantime::parse_duration(text).ok().filter(|time| !time.is_zero());
-    time.ok_or_else(|| "give a time above 0 and its unit, as `90s`, `5m` or `1.5h`".to_owned())
 }

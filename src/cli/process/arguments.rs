@@ -79,7 +79,9 @@ fn joined(command: &Command, words: Vec<OsString>) -> Vec<OsString> {
     let chosen = chosen(command, &words);
     let named = |word: &OsString| {
         let name = word.to_str()?.strip_prefix("--")?;
-        let mut known = chosen.get_arguments().filter(|arg| arg.get_action().takes_values());
+        // Those of all commands are at the top.
+        let all = chosen.get_arguments().chain(command.get_arguments());
+        let mut known = all.filter(|arg| arg.get_action().takes_values());
         known.find(|arg| arg.get_long() == Some(name))
     };
     let is_optional = |arg: &Arg, word: &OsString| {

@@ -1,12 +1,14 @@
-//! `--root` and `--max-memory`, for every command: the files that a scene may use, and the memory that it may take.
+//! `--root`, `--max-memory` and `--time-limit`, for every command: the files that a scene may use, the memory and the time
+//! that it may take.
 
 use super::failure::Failure;
-use super::memory;
+use super::{memory, time_limit};
 use bytesize::ByteSize;
 use std::path::PathBuf;
+use std::time::Duration;
 use tabray_core::{files, text};
 
-/// The files and the memory that a command may use.
+/// The files, the memory and the time that a command may use.
 #[derive(clap::Args)]
 #[group(skip)]
 #[command(next_help_heading = "Limits")]
@@ -20,12 +22,18 @@ pub struct Args {
     /// like Ctrl-C
     #[arg(long, global = true, value_name = "SIZE", value_parser = size)]
     max_memory: Option<ByteSize>,
+    /// Stop after this time, such as 90s, 5m or 1.5h, like Ctrl-C. A render then writes the finished part, and beside it
+    /// a checkpoint for --resume; `chart` and `verify --colours` show what is done. The time includes reading the scene
+    /// and writing the image. By default, `choose` takes up to 30s and `chart` 2m
+    #[arg(long, global = true, value_name = "TIME", value_parser = time_limit::time)]
+    time_limit: Option<Duration>,
 }
 
 impl Args {
     /// Keeps to the bounds from here on.
     pub fn keep(&self) -> Result<(), Failure> {
         memory::limit(self.max_memory);
+        self.time_limit.into_iter().for_each(time_limit::set);
         let Some(root) = &self.root else { return Ok(()) };
         files::confine(root).map_err(|error| {
             let reason = text::reason(&error);

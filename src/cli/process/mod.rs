@@ -12,4 +12,5 @@ pub mod messages;
 pub mod program;
 pub mod progress;
 pub mod temporary;
+pub mod time_limit;
 pub mod visible;

@@ -2,12 +2,12 @@
 
 use super::form::{Form, PictureFile, Premises};
 use crate::options::number::whole;
-use crate::options::stop;
 use crate::process::failure::{Failure, print};
 use crate::process::messages;
 use crate::process::progress::Progress;
+use crate::process::time_limit;
 use serde::Serialize;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::text;
@@ -24,9 +24,6 @@ pub struct Args {
         value_parser = whole::<u32>(1..=Sampler::MAX_SAMPLES)
     )]
     samples: Option<u32>,
-    /// With --colours, stop after this time, such as 90s, 5m or 1.5h, and report the pixels proven so far
-    #[arg(long, value_name = "TIME", requires = "colours", value_parser = stop::time)]
-    time_limit: Option<Duration>,
 }
 
 /// The verdicts on pixels in rows from the top; `None` where the time was up.
@@ -76,13 +73,13 @@ pub fn prove(
         return Err(Failure::usage(message).help("add `--method exact`"));
     }
     plan.camera.samples = args.samples.unwrap_or(plan.camera.samples);
-    let end = args.time_limit.map(|limit| Instant::now() + limit);
+    let end = time_limit::keep().map(|limit| Instant::now() + limit);
     let stops = || end.is_some_and(|end| Instant::now() >= end);
     Ok(Prover::new(&plan).picture(renderer, &|| progress.step(), &stops))
 }
 
 /// Reports the findings, and writes the image of them.
-pub fn report(args: &Args, pixels: Proof, form: &Form, picture: Option<PictureFile>) -> Result<(), Failure> {
+pub fn report(pixels: Proof, form: &Form, picture: Option<PictureFile>) -> Result<(), Failure> {
     let verdicts: Vec<_> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.verdict())).collect();
     let bytes = pixels.iter().flat_map(|pixel| match pixel {
         Some(pixel) => pixel.channels.map(Some),
@@ -116,7 +113,7 @@ pub fn report(args: &Args, pixels: Proof, form: &Form, picture: Option<PictureFi
         let pixels = text::count(contradicted, "pixel");
         return Err(Failure::Failed(format!("the image contradicts the true colours at {pixels}")));
     }
-    if let (Some(limit), 1..) = (args.time_limit, numbers.pixels.not_reached) {
+    if let (Some(limit), 1..) = (time_limit::keep(), numbers.pixels.not_reached) {
         messages::note(&format!("the time limit of {} has been reached", humantime::format_duration(limit)));
         return Err(Failure::Stopped);
     }

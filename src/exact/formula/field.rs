@@ -198,7 +198,7 @@ impl Field {
     /// [`Formula::cost`].
     pub fn cost<N: Scalar>(&self, at: [N; 3]) -> u64 {
         let cell = self.cells().and_then(|cells| cells.program(bounds_of(at)));
-        cell.unwrap_or(self.program()).instructions.iter().map(|of| of.step.cost()).sum()
+        cell.unwrap_or(self.program()).instructions.iter().map(|of| of.step.cost_in_box()).sum()
     }
 }
 

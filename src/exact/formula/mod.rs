@@ -171,6 +171,11 @@ impl Formula {
         self.steps.iter().map(|step| step.cost()).sum()
     }
 
+    /// Returns the estimated number of arithmetic operations on bounds in a box.
+    pub fn cost_in_box(&self) -> u64 {
+        self.steps.iter().map(|step| step.cost_in_box()).sum()
+    }
+
     /// Evaluates a program of the formula in registers. The first ones hold the variables. One function per number type
     /// serves any number of registers. Inlined into the equation of each shape, it would be megabytes of code.
     #[inline(never)]

@@ -63,6 +63,14 @@ impl Step {
         }
     }
 
+    /// Returns the estimated number of arithmetic operations on bounds in a box, where noise has up to eight cells.
+    pub fn cost_in_box(self) -> u64 {
+        match self {
+            Self::Call(Function::Noise) => 8 * self.cost(),
+            _ => self.cost(),
+        }
+    }
+
     /// Applies the operation to one or two values, or with a third one that `c` returns. `MAY_CALL` tells whether
     /// operations on long numbers are calls.
     #[inline(always)]

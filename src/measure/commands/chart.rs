@@ -11,10 +11,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tabray_cli::files::input::{self, Source};
 use tabray_cli::files::output::{self, Output};
-use tabray_cli::options::{scene, stop};
+use tabray_cli::options::scene;
 use tabray_cli::process::failure::{self, Failure, print};
 use tabray_cli::process::interrupt::{self, InterruptAction};
-use tabray_cli::process::{messages, progress};
+use tabray_cli::process::{messages, progress, time_limit};
 use tabray_cli::{Command, Group, Run};
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::choice::Choice;
@@ -38,10 +38,6 @@ pub struct Args {
     /// (.txt), by default the working directory; or a single file to write, such as `a.svg`
     #[arg(short, long, value_name = "DIR|FILE", default_value = ".", hide_default_value = true)]
     output: PathBuf,
-    /// The time that the chart may take, such as 90s or 5m, instead of 2 minutes; choices not measured by then are left
-    /// out
-    #[arg(long, value_name = "TIME", value_parser = stop::time)]
-    time_limit: Option<Duration>,
 }
 
 const EXAMPLES: &str = "\
@@ -55,11 +51,11 @@ const LIMIT: Duration = Duration::from_secs(120);
 const NOTHING: &str = "nothing has been measured yet";
 
 inventory::submit! {
-    Command::new("chart", Group::Measuring, &Run(run)).placed(1, 15)
+    Command::new("chart", Group::Measuring, &Run(run)).placed(1, 15).keeps_time()
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
+    let limit = time_limit::keep().unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let source = args.scene.read()?;
     let model = input::print_warnings(source.load(registry, None))?.model;

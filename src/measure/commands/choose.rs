@@ -14,10 +14,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tabray_cli::files::input;
 use tabray_cli::options::max_error::{LEVELS, MaxError, levels};
-use tabray_cli::options::{scene, set, stop};
+use tabray_cli::options::{scene, set};
 use tabray_cli::process::failure::{self, Failure, print};
 use tabray_cli::process::interrupt::{self, InterruptAction};
-use tabray_cli::process::program;
+use tabray_cli::process::{program, time_limit};
 use tabray_cli::{Command, Group, Run};
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::choice::Choice;
@@ -53,9 +53,6 @@ pub struct Args {
     /// Promise only what bounds make certain: of all pixels, and of all that may be smaller than a sample
     #[arg(long)]
     certain: bool,
-    /// The time that choosing may take, such as 30s or 2m, instead of 30 seconds
-    #[arg(long, value_name = "TIME", value_parser = stop::time)]
-    time_limit: Option<Duration>,
 }
 
 const EXAMPLES: &str = "\
@@ -81,11 +78,11 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 inventory::submit! {
-    Command::new("choose", Group::Measuring, &Run(run)).placed(0, 16)
+    Command::new("choose", Group::Measuring, &Run(run)).placed(0, 16).keeps_time()
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
+    let limit = time_limit::keep().unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();
     let source = args.scene.read()?;
