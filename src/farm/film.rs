@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use tabray_cli::files::output::{self, Output};
 use tabray_cli::files::paths::are_same;
 use tabray_cli::files::picture;
+use tabray_cli::options::frames::{self, Range};
 use tabray_cli::options::number::whole;
 use tabray_cli::process::failure::Failure;
 use tabray_cli::process::progress::Progress;
@@ -33,7 +34,10 @@ const WIDTH: u32 = 192;
 #[command(group = ArgGroup::new("outputs").args(["sheet", "animation"]).required(true).multiple(true))]
 pub struct Args {
     /// The name of the frames, as given to `render --frames` with -o: film.png for film-0001.png, film-0002.png ...
-    frames: PathBuf,
+    images: PathBuf,
+    /// The frames that there must be, as given to `render`; by default, all from the first that there is to the last
+    #[arg(long, value_name = "A..B", value_parser = frames::range)]
+    frames: Option<Range>,
     /// Write one image with small images of the frames in rows; of more than 100 frames, an even choice
     #[arg(long, value_name = "FILE")]
     sheet: Option<PathBuf>,
@@ -48,7 +52,7 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   tabray film film.png --sheet sheet.png
-  tabray film film.png --animation film.apng --rate 30";
+  tabray film film.png --frames 1..240 --animation film.apng --rate 30";
 
 inventory::submit! {
     Command::new("film", Group::Rendering, &Run(run)).placed(3, 2)
@@ -58,7 +62,7 @@ fn run(_: &Registry, args: Args) -> Result<(), Failure> {
     if let Some(path) = &args.animation {
         refuse_name(path)?;
     }
-    let frames = frames(&args.frames)?;
+    let frames = found(&args.images, args.frames.as_ref())?;
     let outputs: Vec<_> = [&args.sheet, &args.animation].into_iter().flatten().collect();
     for path in &outputs {
         if let Some(frame) = frames.iter().find(|frame| are_same(frame, path)) {
@@ -101,8 +105,8 @@ fn refuse_name(animation: &Path) -> Result<(), Failure> {
     .help("end the name in .apng or .png"))
 }
 
-/// Lists the frames in the order of their numbers.
-fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
+/// Lists the frames of a range, or else all, in the order of their numbers.
+fn found(name: &Path, range: Option<&Range>) -> Result<Vec<PathBuf>, Failure> {
     let folder = name.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let stem = name.file_stem().unwrap_or_default().to_string_lossy().into_owned() + "-";
     let number = |path: &Path| {
@@ -113,20 +117,23 @@ fn frames(name: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).map_err(cannot)? {
         let path = name.with_file_name(entry.map_err(cannot)?.file_name());
-        if let Some(number) = number(&path).filter(|_| path.extension() == name.extension()) {
+        let is_wanted = |number: &u32| range.is_none_or(|Range(range)| range.contains(number));
+        if let Some(number) = number(&path).filter(is_wanted).filter(|_| path.extension() == name.extension())
+        {
             found.push((number, path));
         }
     }
     found.sort();
-    let (first, last) = match (found.first(), found.last()) {
-        (Some((first, _)), Some((last, _))) => (*first, *last),
+    let numbers = match (found.first(), found.last()) {
+        (Some((first, _)), Some((last, _))) => range.map_or(*first..=*last, |Range(range)| range.clone()),
         _ => {
             return Err(Failure::usage(format!("there is no frame of `{}`", text::shown(name)))
                 .help("`tabray render SCENE --frames 1..240 -o IMAGE` renders frames"));
         }
     };
-    if let Some(missing) = (first..=last).zip(&found).find(|(number, (is, _))| number != is) {
-        return Err(Failure::usage(format!("frame {} of `{}` is missing", missing.0, text::shown(name)))
+    let mut numbers_found = found.iter().map(|(number, _)| *number);
+    if let Some(missing) = numbers.into_iter().find(|number| numbers_found.next() != Some(*number)) {
+        return Err(Failure::usage(format!("frame {missing} of `{}` is missing", text::shown(name)))
             .help("its render may have been stopped, or its name may have another number of digits"));
     }
     Ok(found.into_iter().map(|(_, path)| path).collect())

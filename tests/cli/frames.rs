@@ -63,6 +63,17 @@ fn frames_have_values_that_change_and_names_by_their_numbers() {
     assert!(status == 2 && said.contains("--sheet <FILE>|--animation <FILE>"), "{said}");
     let (status, said) = run(&folder, &["film", "film.png", "--sheet", "a.png", "--animation", "a.png"]);
     assert!(status == 2 && said.contains("cannot both be `a.png`"), "{said}");
+    // With its range, a film is known to be without its ends.
+    for (range, missing) in [("8..13", Some(13)), ("6..12", Some(6)), ("8..12", None), ("9..11", None)] {
+        let (status, said) = run(&folder, &["film", "film.png", "--sheet", "sheet.png", "--frames", range]);
+        match missing {
+            Some(missing) => assert!(
+                status == 2 && said.contains(&format!("frame {missing} of `film.png` is missing")),
+                "{said}"
+            ),
+            None => assert_eq!(status, 0, "{range}: {said}"),
+        }
+    }
     fs::remove_file(folder.path().join("film-0010.png")).expect("a frame");
     let (status, said) = run(&folder, &["film", "film.png", "--sheet", "sheet.png"]);
     assert!(status == 2 && said.contains("frame 10 of `film.png` is missing"), "{said}");

@@ -148,17 +148,21 @@ impl Order {
         let matches = line().try_get_matches_from(words).unwrap_or_else(|error| error.exit());
         let args = matches.subcommand_matches("render").map(render::Args::from_arg_matches);
         let Some(Ok(args)) = args else { return Err(Failure::AlreadyReported) };
-        let is_film = args.check(registry)?;
-        let last = match is_film {
-            false => format!("merge {image}"),
-            true if FullRange::of(output).is_some() => {
+        let last = match args.check(registry)? {
+            None => format!("merge {image}"),
+            Some(_) if FullRange::of(output).is_some() => {
                 return Err(Failure::usage(format!(
                     "frames as `{}` cannot be resumed or put together",
                     text::shown(output)
                 ))
                 .help("name .png or .ppm files"));
             }
-            true => format!("film {image} --animation {}", word(&output.with_extension("apng"))?),
+            Some(frames) => {
+                format!(
+                    "film {image} --frames {frames} --animation {}",
+                    word(&output.with_extension("apng"))?
+                )
+            }
         };
         let options = options.iter().map(|option| format!(" {}", text::quoted(option.as_ref()))).collect();
         Ok(Job { scene: scene_word, image, path: output.clone(), parts: *parts, options, last })

@@ -46,7 +46,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 ///
 /// Unless `--host` says otherwise, only this machine can reach the page, and only at the printed address. The address
 /// contains a token, new for each run, that keeps other users out. Click a pixel to see how it gets its colour. For
-/// several scenes, the page has a list; only scenes that are open on a page are read and rendered. Ctrl-C quits, with
+/// several scenes, the page has a list; only scenes that are open on a page are read and rendered. An image waits while no page is open. Ctrl-C quits, with
 /// status 0.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]

@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use tabray_cli::files::input;
 use tabray_cli::process::crash;
 use tabray_cli::process::failure::{Failure, report};
@@ -28,6 +28,9 @@ use tabray_tools::threads::renderer_with;
 
 /// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.
 const MAX_PIXELS: usize = 1 << 24;
+
+/// How often an image that waits for a page looks for one.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// Starts the thread that renders the images of a scene, one after another.
 fn painter(session: Arc<Session>) -> Result<Sender<Arc<Frame>>, Failure> {
@@ -46,12 +49,35 @@ fn painter(session: Arc<Session>) -> Result<Sender<Arc<Frame>>, Failure> {
                 }
                 feed.add(&frame, events::part(&frame, &area, &colours));
             };
+            // While no page is open, the image waits.
+            let waited = Mutex::new(Duration::ZERO);
+            let goes_on = || {
+                if !session.has_viewers() {
+                    // The other threads wait for the first one.
+                    let mut waited = waited.lock().unwrap_or_else(PoisonError::into_inner);
+                    let away = Instant::now();
+                    while !session.has_viewers() {
+                        frame.check()?;
+                        thread::sleep(LOOK);
+                    }
+                    *waited += away.elapsed();
+                }
+                frame.check()
+            };
             let painted = crash::catch(|| {
                 let mut plan = Plan::for_picture(model);
-                if progressive::render(&renderer, &mut plan, part, || frame.check()).is_break() {
+                if progressive::render(&renderer, &mut plan, part, goes_on).is_break() {
                     return;
                 }
-                feed.add(&frame, events::done(&frame, start.elapsed()));
+                feed.add(
+                    &frame,
+                    events::done(
+                        &frame,
+                        start
+                            .elapsed()
+                            .saturating_sub(*waited.lock().unwrap_or_else(PoisonError::into_inner)),
+                    ),
+                );
                 let levels = *levels.lock().unwrap_or_else(PoisonError::into_inner);
                 let [width, height] = plan.camera.pixels;
                 let remark = diagnosis::remark(&plan, [&(0..width), &(0..height)], &levels);

@@ -398,3 +398,34 @@ fn reading_a_file_is_no_change_of_it() {
     let scene = events.until("scene");
     assert_eq!((&scene["version"], scene["text"].as_str()), (&2.into(), Some(&*ball("0 9 0"))));
 }
+
+/// Returns the CPU time of a process, in hundredths of a second.
+#[cfg(target_os = "linux")]
+fn cpu_time(process: u32) -> u64 {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).expect("it runs");
+    let (_, fields) = stat.rsplit_once(')').expect("its name");
+    fields.split_whitespace().skip(11).take(2).map(|ticks| ticks.parse::<u64>().expect("a number")).sum()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_image_waits_while_no_page_is_open() {
+    let watching = Watching::text(&ball("9 0 0").replace("80 60", "1600 1200 samples 64"));
+    let mut events = watching.events();
+    events.until("scene");
+    drop(events);
+    let process = watching.child.id();
+    let mut last = cpu_time(process);
+    let waiting = loop {
+        thread::sleep(Duration::from_millis(500));
+        let now = cpu_time(process);
+        if now <= last + 2 {
+            break now;
+        }
+        last = now;
+    };
+    let mut events = watching.events();
+    events.until("done");
+    // It was not finished before.
+    assert!(cpu_time(process) > waiting + 20);
+}
