@@ -5,13 +5,14 @@ use super::notes::Notes;
 use super::picture::{Clip, Light, Look, Picture, Surface};
 use glam::{DMat3, DVec3};
 use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use tabray_core::text::shortest;
 use tabray_exact::formula::is_taken;
 use tabray_lang::reader::Fault;
 
 /// The width and height of the image, which files do not give.
-const PIXELS: u32 = 480;
+const PIXELS: u32 = 240;
 
 /// The number of lamps.
 const LIGHTS: usize = 8;
@@ -20,7 +21,7 @@ const MATRIX: [f64; 16] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0
 
 /// Reads a file.
 pub fn read(text: &str, notes: &mut Notes) -> Option<Picture> {
-    let mut file = File { text, entries: entries(text), used: RefCell::default() };
+    let file = File::new(text);
     let Some(equation) = file.find("surface_equation") else {
         let fault = Fault::error(
             Some(0..text.lines().next().map_or(0, str::len)),
@@ -29,10 +30,10 @@ pub fn read(text: &str, notes: &mut Notes) -> Option<Picture> {
         notes.add(fault.help("a file of SURFER has a line such as `surface_equation=x^2+y^2+z^2-a`"));
         return None;
     };
-    let mut parameters = Parameters(Vec::new());
+    let mut parameters = Parameters::default();
     for entry in &file.entries {
         if let Some(name) = file.text[entry.key.clone()].strip_prefix("surface_parameter_")
-            && !parameters.0.iter().any(|(known, ..)| known == name)
+            && !parameters.places.contains_key(name)
         {
             let value = file.numbers(&file.text[entry.key.clone()], [0.0], notes);
             let ours = if is_taken(name) || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -40,15 +41,18 @@ pub fn read(text: &str, notes: &mut Notes) -> Option<Picture> {
             } else {
                 name.to_owned()
             };
-            parameters.0.push((name.to_owned(), ours, value[0]));
+            parameters.places.insert(name.to_owned(), parameters.all.len());
+            parameters.all.push((ours, value[0]));
         }
     }
     let formula = expression::read(text, equation, Dialect::Surfer, &mut parameters);
     let picture = file.picture(formula, parameters, notes);
     let used = file.used.take();
-    file.entries.retain(|entry| !used.iter().any(|used| *used == file.text[entry.key.clone()]));
     for entry in &file.entries {
         let key = &file.text[entry.key.clone()];
+        if used.contains(key) {
+            continue;
+        }
         if key.contains("_specular_") {
             let fault = Fault::warning(Some(entry.key.clone()), "highlights are left out");
             notes.add(fault.label("in a scene, they come with mirror images"));
@@ -59,12 +63,18 @@ pub fn read(text: &str, notes: &mut Notes) -> Option<Picture> {
     picture
 }
 
-/// The parameters of a formula: their names there and in the scene, and their values.
-struct Parameters(Vec<(String, String, f64)>);
+/// The parameters of a formula.
+#[derive(Default)]
+struct Parameters {
+    /// Their names in the scene, and their values.
+    all: Vec<(String, f64)>,
+    /// Their places by their names in the formula.
+    places: BTreeMap<String, usize>,
+}
 
 impl Names for Parameters {
     fn value(&self, name: &str) -> Option<Value> {
-        let (_, ours, value) = self.0.iter().rfind(|(theirs, ..)| theirs == name)?;
+        let (ours, value) = &self.all[*self.places.get(name)?];
         Some(Value::named(ours, *value))
     }
 
@@ -118,16 +128,23 @@ fn entries(text: &str) -> Vec<Entry> {
 struct File<'t> {
     text: &'t str,
     entries: Vec<Entry>,
+    /// The place of each property's value. The last occurrence counts.
+    values: BTreeMap<&'t str, Range<usize>>,
     /// The names of the properties that were used.
-    used: RefCell<Vec<String>>,
+    used: RefCell<BTreeSet<String>>,
 }
 
-impl File<'_> {
-    /// Returns the place of a property's value. The last occurrence counts.
+impl<'t> File<'t> {
+    fn new(text: &'t str) -> Self {
+        let entries = entries(text);
+        let values = entries.iter().map(|Entry { key, value }| (&text[key.clone()], value.clone())).collect();
+        Self { text, entries, values, used: RefCell::default() }
+    }
+
+    /// Returns the place of a property's value.
     fn find(&self, key: &str) -> Option<Range<usize>> {
-        self.used.borrow_mut().push(key.to_owned());
-        let entry = self.entries.iter().rfind(|entry| self.text[entry.key.clone()] == *key)?;
-        Some(entry.value.clone())
+        self.used.borrow_mut().insert(key.to_owned());
+        self.values.get(key).cloned()
     }
 
     fn word(&self, key: &str) -> Option<&str> {
@@ -221,7 +238,7 @@ impl File<'_> {
         }
         let formula = formula.map_err(|fault| notes.add(*fault)).ok()?;
         Some(Picture {
-            numbers: parameters.0.into_iter().map(|(_, ours, value)| (ours, shortest(value))).collect(),
+            numbers: parameters.all.into_iter().map(|(ours, value)| (ours, shortest(value))).collect(),
             functions: Vec::new(),
             surfaces: vec![Surface { formula, map, sides }],
             clips: vec![ball],

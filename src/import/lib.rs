@@ -12,6 +12,7 @@ mod tests;
 
 use notes::Notes;
 use picture::Picture;
+use std::collections::BTreeSet;
 use tabray_lang::Syntax;
 use tabray_lang::import::{Imported, Program};
 use tabray_lang::reader::Report;
@@ -60,11 +61,11 @@ fn read(
         Some(picture) if !report.is_fatal() => picture,
         _ => return Err(report),
     };
-    let mut lines: Vec<(String, usize)> = Vec::new();
+    let (mut lines, mut known) = (Vec::new(), BTreeSet::new());
+    let ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
     for (word, at) in left {
-        if !lines.iter().any(|(known, _)| *known == word) {
-            let line = 1 + text[..at].matches('\n').count();
-            lines.push((word, line));
+        if known.insert(word.clone()) {
+            lines.push((word, 1 + ends.partition_point(|end| *end < at)));
         }
     }
     let mut head = format!("# Written by `tabray convert` from {what}.\n");

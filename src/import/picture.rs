@@ -12,6 +12,9 @@ const SIMILAR: f64 = 1e-5;
 /// The extent of a picture without a clip from the middle, in heights of the picture.
 const DEEP: f64 = 5.0;
 
+/// The samples of each pixel. A surface is first to be seen in a second or two.
+const SAMPLES: u32 = 4;
+
 /// A picture, in its own coordinates: x right, y up and z toward the viewer.
 pub struct Picture {
     /// Named numbers, each with its formula.
@@ -131,7 +134,7 @@ impl Picture {
         let [wide, high] = self.pixels;
         let _ = writeln!(
             text,
-            "\northographic eye\n{{\n    pixeldim {wide} {high}\n    position {}\n    target   {}\n    up       {}\n    width    {}\n    samples  16\n    \
+            "\northographic eye\n{{\n    pixeldim {wide} {high}\n    position {}\n    target   {}\n    up       {}\n    width    {}\n    samples  {SAMPLES}               # `--size 1000 --samples 16` shows more\n    \
              transfer linear           # colours are bytes there\n}}\n\nbackground behind {{ colour {} }}\n",
             point(at(DVec3::new(0.0, 0.0, far))),
             point(at(DVec3::ZERO)),

@@ -237,3 +237,35 @@ fn a_chart_writes_the_file_that_is_named_and_begins_with_what_to_do() {
     assert!(fs::read_to_string(folder.path().join("a.svg")).expect("the chart").contains("<svg"));
     assert_eq!(names_in(folder.path()).len(), before.len() + 1);
 }
+
+/// What beginners write in place of the language's own words has its cure.
+#[test]
+fn what_beginners_write_is_told_with_the_cure() {
+    let folder = folder();
+    let scene = "camera eye { pixeldim 160 120  worlddim 8 6  viewpoint 4 3 6 }\n\
+        material blue { ambient 0.5 0.5 1 }\nsphere ball { material blue  center 4 2 -4  radius 2 }\n";
+    for (from, to, cure) in [
+        ("ambient 0.5 0.5 1", "ambient red", "`ambient 1 0 0`"),
+        ("ambient 0.5 0.5 1", "ambient rgb(0.5, 0.5, 1)", "write `ambient 0.5 0.5 1`"),
+        ("ambient 0.5 0.5 1", "ambient rgb(255,0,51)", "write `ambient 1 0 0.2`"),
+        ("ambient 0.5 0.5 1", "ambient <0.5, 0.5, 1>", "write `ambient 0.5 0.5 1`"),
+        ("ambient 0.5 0.5 1", "ambient \"0.5 0.5 1\"", "write numbers without quotes: `0.5 0.5 1`"),
+        ("160 120", "160x120", "write `pixeldim 160 120`"),
+        ("160 120", "160,120", "write `pixeldim 160 120`"),
+        ("160 120", "160 120 samples 4x4", "4 x 4 samples are `samples 16`"),
+        ("2 -4", "2 - 4", "write `center 4 2 -4`"),
+        ("2 -4", "2 \u{2212}4", "write `center 4 2 -4`"),
+        ("sphere ball", "sphere big ball", "a name is one word: `sphere big_ball {`"),
+        ("sphere ball {", "sphere ball (", "attributes go in braces: `sphere ball { ... }`"),
+        ("sphere ball {", "for i 5 { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
+        ("sphere ball {", "for (i = 0; i < 5; i++) sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
+    ] {
+        fs::write(folder.path().join("a.ray"), scene.replace(from, to)).expect("a scene");
+        let (status, _, said) = outcome(tabray(&folder).args(["check", "a.ray"]));
+        assert!(status == 2 && said.contains(cure), "{to}: {said}");
+    }
+    let toml = "[camera.eye]\npixeldim = [160, 120]\nworlddim = [8, 6]\nviewpoint = \"4 3 6\"\n";
+    fs::write(folder.path().join("a.toml"), toml).expect("a scene");
+    let (_, _, said) = outcome(tabray(&folder).args(["check", "a.toml"]));
+    assert!(said.contains("write numbers without quotes: `[4, 3, 6]`"), "{said}");
+}

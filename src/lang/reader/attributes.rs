@@ -1,5 +1,6 @@
 //! The check of a parsed entity against the table of its type.
 
+use super::cures;
 use super::fault::{Fault, Place};
 use super::guesses::{find_attribute, near_attribute};
 use super::names::Names;
@@ -7,6 +8,7 @@ use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
 use super::values;
 use crate::registry::Registry;
+use crate::syntax::Syntax;
 use tabray_core::scene::attribute::{Attribute, MAX_LENGTH, MIN_LENGTH};
 use tabray_core::scene::choice::Choices;
 use tabray_core::scene::entity::Entity;
@@ -189,7 +191,7 @@ impl AttributeChecker<'_, '_> {
         if words.iter().any(|word| word.form == Form::Faulty) {
             return None;
         }
-        if let Some(fault) = fault_of_values(attribute, title, word, words) {
+        if let Some(fault) = fault_of_values(attribute, title, (word, words), self.report.syntax()) {
             self.report.add(fault);
             return None;
         }
@@ -209,7 +211,11 @@ impl AttributeChecker<'_, '_> {
             }
             (value_type, _) => match values::read(value_type, words) {
                 Ok(datum) => datum,
-                Err(faults) => {
+                Err(mut faults) => {
+                    if let Some(cure) = cures::cure(attribute, words, self.report.syntax()) {
+                        faults.truncate(1);
+                        faults.iter_mut().for_each(|fault| fault.help = Some(cure.clone()));
+                    }
                     for fault in faults {
                         let takes = format!("`{}` of {title} takes {}", word.text, attribute.takes());
                         self.report.add(match (&fault.place, fault.label.is_empty()) {
@@ -253,8 +259,8 @@ impl AttributeChecker<'_, '_> {
 fn fault_of_values(
     attribute: &dyn Attribute,
     title: &str,
-    word: &Word<'_>,
-    words: &[Word<'_>],
+    (word, words): (&Word<'_>, &[Word<'_>]),
+    syntax: Syntax,
 ) -> Option<Fault> {
     let truth = words.iter().find(|word| word.form == Form::Truth);
     if let (false, Some(truth)) = (matches!(attribute.value_type(), Type::Truth), truth) {
@@ -271,7 +277,8 @@ fn fault_of_values(
         _ => attribute.arity().not(&count),
     };
     let message = format!("`{}` of {title} takes {}, not {not}", word.text, attribute.takes());
-    Some(Fault::error(whole(word, words), message).help(meaning(attribute)))
+    let help = cures::cure(attribute, words, syntax).unwrap_or_else(|| meaning(attribute));
+    Some(Fault::error(whole(word, words), message).help(help))
 }
 
 /// Returns an error if an attribute's value breaks its rule, or if its square overflows.

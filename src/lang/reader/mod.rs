@@ -4,6 +4,7 @@ mod attributes;
 mod black_scene;
 mod build;
 mod check;
+mod cures;
 mod encoding;
 mod excerpt;
 mod fault;

@@ -1,5 +1,6 @@
 //! The named numbers and the functions of a scene, and formulas in place of numbers.
 
+use super::cures;
 use super::fault::{Fault, Place, Severity};
 use super::parsed::{Form, Word};
 use super::report::Report;
@@ -165,7 +166,14 @@ impl<'a> Numbers<'a> {
                     if values.is_empty() { fault } else { fault.help(format!("here {values}")) }
                 }
             },
-            Err(fault) => self.explained(word, fault, report),
+            Err(fault) => match cures::in_quotes(&word.text, report.syntax()) {
+                Some(cure) => Fault::error(
+                    word.place.clone(),
+                    format!("`{}` is not a formula", word.text.escape_debug()),
+                )
+                .help(cure),
+                None => self.explained(word, fault, report),
+            },
         };
         report.add(fault);
         None

@@ -74,7 +74,7 @@ fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     chosen.map(Datum::Choice).ok_or_else(|| {
         let mut fault =
             Fault::error(word.place.clone(), format!("there is no {} `{}`", choices.what, word.text))
-                .help(format!("the {}s are {}", choices.what, choices.listed()));
+                .help(format!("the {} are {}", text::plural(choices.what), choices.listed()));
         if let Some(near) = nearest(&word.text, choices.all().iter().map(|choice| choice.name)) {
             fault = fault.label(format!("did you mean `{near}`?")).meant(Some(near));
         }

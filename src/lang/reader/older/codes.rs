@@ -181,6 +181,15 @@ pub fn is_known(number: u32) -> bool {
         || UNREAD.iter().any(|(unread, _)| *unread == number)
 }
 
+/// Returns the code for a type that a line names, beside a comment: `sphere`, `Finite_Plane:`, `light # a lamp`.
+pub fn named(line: &str) -> Option<u32> {
+    let end = line.find(['#', '%', ';']).or(line.find("//")).unwrap_or(line.len());
+    let plain = |name: &str| name.replace([' ', '_', '-'], "").to_lowercase();
+    let name = plain(line[..end].trim_end_matches([':', ' ', '\t']));
+    let is_named = |code: &&Code| plain(code.name) == name || plain(code.entity) == name;
+    CODES.iter().chain([&TORUS, &TRIANGLE, &DISC]).find(is_named).map(|code| code.number)
+}
+
 /// Returns the meaning of a code. Two codes have two meanings each. `second` gives the count of numbers on the second
 /// line after those of the material, which decides between the meanings.
 pub fn of(number: u32, second: impl Fn() -> usize) -> Option<&'static Code> {

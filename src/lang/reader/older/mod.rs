@@ -32,14 +32,14 @@ pub fn is_older(registry: &Registry, text: &str) -> bool {
     if !first.is_of_numbers() && text.contains(['{', '=', '<', '[']) {
         return false;
     }
+    let lines = Lines::of(text, 0);
     let (mut count, mut others) = (0, 0);
-    for row in rows(text, 0) {
+    for row in &lines.0 {
         *(if row.is_of_numbers() { &mut count } else { &mut others }) += 1;
     }
     if count <= others || has_entities(registry, text).is_some() {
         return false;
     }
-    let lines = Lines::of(text, 0);
     let begins = |at| lines.numbers(at, 4).len();
     let has_head = begins(0) >= 2 && begins(1) >= 3 && begins(2) == 1;
     has_head || (0..lines.0.len()).any(|at| lines.begins_object(at) && (at != 0 || begins(3) >= 3))
@@ -80,7 +80,13 @@ struct Lines<'a>(Vec<Row<'a>>);
 
 impl<'a> Lines<'a> {
     fn of(text: &'a str, start: usize) -> Self {
-        Self(rows(text, start).collect())
+        let lines = Self(rows(text, start).collect());
+        if (0..lines.0.len()).any(|at| lines.begins_object(at)) {
+            return lines;
+        }
+        // Without any code, words may stand for the types.
+        let named = |row: Row<'a>| Row { code: codes::named(row.text), ..row };
+        Self(lines.0.into_iter().map(named).collect())
     }
 
     /// Returns the numbers at the beginning of a line, up to `most` of them.

@@ -6,8 +6,10 @@ use std::ops::Range;
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
     /// The position of the line in the whole text, in bytes.
-    start: usize,
+    pub start: usize,
     pub text: &'a str,
+    /// The code for which a word stands alone on the line, in a scene that has words for its types.
+    pub code: Option<u32>,
 }
 
 /// A number of a line, as C's `scanf` would read it.
@@ -31,7 +33,7 @@ pub fn rows(text: &str, start: usize) -> impl Iterator<Item = Row<'_>> {
     text.split(['\n', '\r']).filter_map(move |line| {
         let row = line.trim();
         let start = start + (row.as_ptr() as usize - text.as_ptr() as usize);
-        (!row.is_empty()).then_some(Row { start, text: row })
+        (!row.is_empty()).then_some(Row { start, text: row, code: None })
     })
 }
 
@@ -43,11 +45,15 @@ impl<'a> Row<'a> {
 
     /// Tells whether the line begins with a number.
     pub fn is_of_numbers(&self) -> bool {
-        number_length(self.text).is_some()
+        self.code.is_some() || number_length(self.text).is_some()
     }
 
     /// Returns the numbers at the beginning of the line, up to `most` of them.
     pub fn numbers(&self, most: usize) -> Vec<Number> {
+        if let Some(code) = self.code {
+            let (_, place) = self.word();
+            return vec![Number { value: f64::from(code), place, is_joined: false }];
+        }
         let (mut numbers, mut at) = (Vec::with_capacity(most), 0);
         while numbers.len() < most
             && let Some(length) = number_length(&self.text[at..])

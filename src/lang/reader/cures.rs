@@ -1,0 +1,116 @@
+//! What people write in place of numbers, and how to write it.
+
+use super::parsed::Word;
+use crate::syntax::Syntax;
+use tabray_core::scene::attribute::Attribute;
+use tabray_core::text::shortest;
+
+/// Names of colours, and their light.
+const COLOURS: [(&str, [f64; 3]); 16] = [
+    ("black", [0.0, 0.0, 0.0]),
+    ("white", [1.0, 1.0, 1.0]),
+    ("red", [1.0, 0.0, 0.0]),
+    ("green", [0.0, 1.0, 0.0]),
+    ("blue", [0.0, 0.0, 1.0]),
+    ("yellow", [1.0, 1.0, 0.0]),
+    ("cyan", [0.0, 1.0, 1.0]),
+    ("magenta", [1.0, 0.0, 1.0]),
+    ("orange", [1.0, 0.5, 0.0]),
+    ("purple", [0.5, 0.0, 0.5]),
+    ("pink", [1.0, 0.5, 0.5]),
+    ("brown", [0.5, 0.25, 0.1]),
+    ("gold", [1.0, 0.75, 0.2]),
+    ("silver", [0.75, 0.75, 0.75]),
+    ("gray", [0.5, 0.5, 0.5]),
+    ("grey", [0.5, 0.5, 0.5]),
+];
+
+/// Returns how to write what words mean as the values of an attribute that takes numbers, if that is clear.
+pub fn cure(attribute: &dyn Attribute, words: &[Word<'_>], syntax: Syntax) -> Option<String> {
+    if !attribute.value_type().is_numeric() {
+        return None;
+    }
+    let text = words.iter().map(|word| word.text.as_ref()).collect::<Vec<_>>().join(" ");
+    let text = text.trim();
+    let write = |numbers: &[f64]| {
+        let numbers: Vec<_> = numbers.iter().map(|number| shortest(*number)).collect();
+        format!("`{}`", syntax.pair(attribute.name(), &numbers))
+    };
+    let takes = |count: usize| attribute.arity().allow(count);
+    let lower = text.to_lowercase();
+    if takes(3) {
+        if let Some(colour) = colour(text) {
+            return Some(format!("a colour is its red, green and blue: {}", write(&colour)));
+        }
+    }
+    if let ("yes" | "true" | "on" | "no" | "false" | "off", true) = (&*lower, takes(1)) {
+        let number = f64::from(u8::from(matches!(&*lower, "yes" | "true" | "on")));
+        return Some(format!("write {}", write(&[number])));
+    }
+    // `4x4` samples are 16.
+    if let (true, Some((across, up))) = (attribute.name() == "samples", lower.split_once('x'))
+        && let (Ok(across), Ok(up)) = (across.parse::<u16>(), up.parse::<u16>())
+    {
+        return Some(format!("{across} x {up} samples are {}", write(&[f64::from(across) * f64::from(up)])));
+    }
+    let numbers = numbers(text)?;
+    if !takes(numbers.len()) {
+        return None;
+    }
+    let is_levels = lower.starts_with("rgb") && numbers.iter().any(|number| *number > 1.0);
+    let numbers = match is_levels {
+        true => numbers.iter().map(|level| (level / 255.0 * 1000.0).round() / 1000.0).collect(),
+        false => numbers,
+    };
+    Some(format!("write {}", write(&numbers)))
+}
+
+/// Returns how to write what a text in quotes means in place of a formula.
+pub fn in_quotes(text: &str, syntax: Syntax) -> Option<String> {
+    let (numbers, what) = match colour(text) {
+        Some(colour) => (colour.to_vec(), "a colour is its red, green and blue"),
+        None => (numbers(text).filter(|numbers| numbers.len() > 1)?, "write numbers without quotes"),
+    };
+    let numbers: Vec<_> = numbers.iter().map(|number| shortest(*number)).collect();
+    Some(match syntax {
+        Syntax::Notes => format!("{what}: `{}`", numbers.join(" ")),
+        Syntax::Toml => format!("{what}: `[{}]`", numbers.join(", ")),
+    })
+}
+
+/// Returns the light of a colour by its name, or written as `#ff8000`.
+fn colour(text: &str) -> Option<[f64; 3]> {
+    let lower = text.to_lowercase();
+    if let Some((_, colour)) = COLOURS.iter().find(|(name, _)| *name == lower) {
+        return Some(*colour);
+    }
+    let digits = text.strip_prefix('#').or(text.strip_prefix("0x"))?;
+    let level = |at: usize| u8::from_str_radix(digits.get(at..at + 2)?, 16).ok();
+    let levels = (digits.len() == 6).then(|| [level(0), level(2), level(4)])?;
+    let [Some(red), Some(green), Some(blue)] = levels else { return None };
+    Some([red, green, blue].map(|level| (f64::from(level) / 255.0 * 1000.0).round() / 1000.0))
+}
+
+/// Reads numbers that are joined by commas, brackets, an `x` or the word of a function, or whose minus is another sign or
+/// stands apart.
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    let text = text.replace(['\u{2212}', '\u{2013}', '\u{2014}'], "-").replace('\u{d7}', "x");
+    let body = match text.split_once(['(', '[', '<', '{']) {
+        Some((before, body)) if before.chars().all(|letter| letter.is_alphanumeric()) => body,
+        Some(_) => return None,
+        None => &text,
+    };
+    let body = body.trim_end_matches([')', ']', '>', '}', ';', ',']);
+    let is_between = |letter: char| letter.is_whitespace() || matches!(letter, ',' | ';' | 'x' | 'X');
+    let (mut numbers, mut is_minus) = (Vec::new(), false);
+    for word in body.split(is_between).filter(|word| !word.is_empty()) {
+        if word == "-" && !is_minus {
+            is_minus = true;
+            continue;
+        }
+        let number: f64 = word.parse().ok()?;
+        numbers.push(if is_minus { -number } else { number });
+        is_minus = false;
+    }
+    (!is_minus && !numbers.is_empty() && numbers.iter().all(|number| number.is_finite())).then_some(numbers)
+}
