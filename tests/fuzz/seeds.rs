@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 if bytes.len() <= 1024 && !text.contains("profile") {
                     write(if is_toml { "toml" } else { "notes" }, index, &bytes)?;
                     write("fmt", index, &[&[u8::from(is_toml)], &*bytes].concat())?;
+                    write("lsp", index, &[&[u8::from(is_toml), 128], &*bytes].concat())?;
                 }
                 for accuracy in 0..4 {
                     let first = accuracy + if is_toml { 4 } else { 0 };
@@ -72,6 +73,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (first, name) in [(kind, 1002 + 2 * index), (kind + 5, 1003 + 2 * index)] {
             write("mesh", name, &[&[first], &bytes[..]].concat())?;
         }
+        write("gltf", index, &[&[1], &bytes[..]].concat())?;
+    }
+    write("gltf", 2, &[&[1], target::COPIES.as_bytes()].concat())?;
+    for (index, text) in target::IMPORTED.iter().enumerate() {
+        write("import", index, text.as_bytes())?;
     }
     write("older", 0, target::OLDER.as_bytes())?;
     for (index, bytes) in target::rays().into_iter().enumerate() {

@@ -4,13 +4,14 @@
 
 use std::fs::{self, File};
 use std::io::{BufReader, Read, Seek, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::exact::{Dual, Formula, Interval, Jet, Scalar, Wide};
 use tabray::fuzz::{Image, Server, review, watch};
 use tabray::render::{Plan, Renderer, trace};
-use tabray::scene::editor::{self, Text};
+use tabray::scene::editor::{self, Files, Text, View};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
 use tabray::simd::Cpu;
 use tabray::tools::hits::rays::{BadRay, RayFormat, RayReader};
@@ -248,6 +249,79 @@ pub fn mesh(bytes: &[u8]) {
     fs::remove_file(&path).expect("it was written");
     if let Some(said) = said {
         assert!(said.contains("mesh `surface` ") && said.len() < 1 << 14, "{said}");
+    }
+}
+
+/// Reads a glTF: its text, or a GLB. Its first byte chooses what [`mesh`] does.
+pub fn gltf(bytes: &[u8]) {
+    let [kind, file @ ..] = bytes else { return };
+    let is_text = file.first() == Some(&b'{');
+    mesh(&[&[if is_text { 4 } else { 3 } + 5 * (kind % 2)], file].concat());
+}
+
+/// A glTF with copies, a material of two extensions and an image that is none.
+pub const COPIES: &str = r#"{"asset":{"version":"2.0"},"extensionsUsed":["EXT_mesh_gpu_instancing","X_unknown"],"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0,"SCALE":0}}}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0,"mode":5}]}],
+"materials":[{"alphaMode":"BLEND","extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseTexture":{"index":0}},
+"KHR_materials_transmission":{"transmissionFactor":0.5}}}],"textures":[{"sampler":0,"extensions":{"EXT_texture_webp":{"source":0}}}],
+"samplers":[{"wrapS":33071}],"images":[{"bufferView":0}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":0,"componentType":5126,"count":3,"type":"VEC2"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAA/","byteLength":36}]}"#;
+
+/// Files of other programs, each with the first byte that chooses its kind.
+pub const IMPORTED: [&str; 3] = [
+    "\x00surface_equation=x^2+y^2+z^2-a\nsurface_parameter_a=0.5\nscale_factor=0.1\nlight_status_0=ON\n\
+     light_position_0=1 2 3\nlight_color_0=1 1 1\nlight_intensity_0=0.5\nrotation_matrix=1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n",
+    "\x01double a = 0.5;\nwidth = 40; height = 30;\nsurface = x^2+y^2+rotate(z^2, a, xAxis)-a;\nclip = sphere;\ndraw_surface;\n",
+    "\x01poly p = x^3-3*x*y^2; int i = 2;\nsurface = deg(p, i)*z + p*diff(p, x);\nscale_x = 0.5;\ndraw_surface;\n",
+];
+
+/// Imports a file of SURFER or of surf, which must satisfy the same as [`notes`]. The first byte chooses the program.
+pub fn import(bytes: &[u8]) {
+    let [kind, text @ ..] = bytes else { return };
+    load_and_dump(["scene.jsurf", "scene.surf"][usize::from(kind % 2)], text);
+}
+
+/// The only file of an editor.
+struct OneFile(Arc<View>);
+
+impl Files for OneFile {
+    fn view(&self, path: &Path) -> Option<Arc<View>> {
+        (path == Path::new("scene")).then(|| self.0.clone())
+    }
+}
+
+/// Asks all that an editor asks about a scene while it is typed. The first byte chooses the syntax, the second one the place
+/// of the cursor. What is answered lies within the text, and between its letters.
+pub fn lsp(bytes: &[u8]) {
+    let [kind, cursor, text @ ..] = bytes else { return };
+    let Ok(text) = str::from_utf8(text) else { return };
+    let name = ["scene.ray", "scene.toml"][usize::from(kind % 2)];
+    let wanted = text.len() * usize::from(*cursor) / 255;
+    let at = (0..=wanted).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
+    let view = Arc::new(editor::read(*REGISTRY, name, Text::new(text)));
+    let holds = |place: &Range<usize>| assert!(text.get(place.clone()).is_some(), "{place:?} of {text:?}");
+    let group = editor::group(&OneFile(view.clone()), Path::new("scene"), &[]);
+    let _ = editor::completions(*REGISTRY, &group, at);
+    let _ = editor::signature(&view, at);
+    editor::hover(&group, at).iter().for_each(|hover| holds(&hover.place));
+    editor::definitions(&group, at).iter().for_each(|location| holds(&location.place));
+    editor::usages(&group, at, true).iter().for_each(|location| holds(&location.place));
+    if let Ok(changes) = editor::renamed(&group, at, "renamed") {
+        changes.iter().for_each(|(location, _)| holds(&location.place));
+    }
+    editor::colours(&view).iter().for_each(|swatch| holds(&swatch.place));
+    editor::hints(&view, &(0..text.len())).iter().for_each(|hint| holds(&(hint.at..hint.at)));
+    editor::semantic_tokens(&view).iter().for_each(|token| holds(&token.place));
+    editor::folds(&view).iter().for_each(|fold| assert!(fold.lines[0] <= fold.lines[1], "{text:?}"));
+    let _ = editor::look_at(&view, &(at..at));
+    let mut waiting = editor::outline(&view);
+    while let Some(symbol) = waiting.pop() {
+        holds(&symbol.place);
+        holds(&symbol.name_place);
+        waiting.extend(symbol.inner);
     }
 }
 

@@ -6,8 +6,8 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::{env, fs};
 use target::{
-    MESHES, OLDER, TO_REVIEW, TO_WATCH, checkpoint, fmt, formula, hits, mesh, notes, older, rays, render,
-    review, texture, toml, triangle, watch,
+    COPIES, IMPORTED, MESHES, OLDER, TO_REVIEW, TO_WATCH, checkpoint, fmt, formula, gltf, hits, import, lsp,
+    mesh, notes, older, rays, render, review, texture, toml, triangle, watch,
 };
 
 #[path = "../fuzz/target.rs"]
@@ -86,6 +86,28 @@ fn what_is_formatted_is_formatted_and_the_same_scene() {
             .map(move |text| [&[kind], &*text].concat())
     };
     run(fmt, &of_kind("ray", 0).chain(of_kind("toml", 1)).collect::<Vec<_>>(), 2000);
+}
+
+#[test]
+fn files_of_other_programs_are_refused_or_imported() {
+    run(import, &IMPORTED.map(|text| text.as_bytes().to_vec()), 2000);
+}
+
+#[test]
+fn what_an_editor_asks_is_answered_within_the_text() {
+    let of_kind = |extension, kind: u8| {
+        let texts = scenes_in(extension).into_iter().filter(|text| text.len() <= 1024);
+        texts.flat_map(move |text| [0, 85, 170].map(|cursor| [&[kind, cursor], &*text].concat()))
+    };
+    run(lsp, &of_kind("ray", 0).chain(of_kind("toml", 1)).collect::<Vec<_>>(), 4000);
+}
+
+#[test]
+fn gltf_is_refused_or_read() {
+    let seeds = triangle().into_iter().chain([COPIES.as_bytes().to_vec()]);
+    let seeds: Vec<_> = seeds.flat_map(|bytes| [0, 1].map(|kind| [&[kind], &bytes[..]].concat())).collect();
+    seeds.iter().for_each(|seed| gltf(seed));
+    run(gltf, &seeds, 4000);
 }
 
 #[test]
