@@ -80,6 +80,10 @@ impl<B: Bend> Shader for Bent<B> {
         self.colours.specular(material, at)
     }
 
+    fn emission(&self, at: &SurfacePoint) -> Rgb {
+        self.colours.emission(at)
+    }
+
     fn uniform(&self, material: &Material) -> Option<Look> {
         self.colours.uniform(material)
     }

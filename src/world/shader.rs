@@ -50,6 +50,13 @@ pub trait Shader: Send + Sync {
         material.specular
     }
 
+    /// Returns the part of the ambient light at a point that the surface gives by itself, besides the material's
+    /// emission: where light bounces, it lights other surfaces.
+    #[inline]
+    fn emission(&self, _at: &SurfacePoint) -> Rgb {
+        Rgb::ZERO
+    }
+
     /// Calls a function with the shader of a copied object, and parts of these points in its coordinates, if this is the
     /// shader of a copy; tells whether it is.
     #[doc(hidden)]

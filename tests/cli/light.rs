@@ -115,8 +115,8 @@ fn a_room_that_no_lamp_lights_directly_is_told_of_bounces() {
     let folder = folder();
     let room = "material white { diffuse 0.8 0.8 0.8 }
         sphere room { material white center 0 0 0 radius 9 }
-        sphere screen { material white center 0 0 -6 radius 2 }
-        light lamp { location 0 0 -8.5 emissivity 1 1 1 }";
+        sphere screen { material white center 0 0 -4.5 radius 4 }
+        light lamp { location 0 0 -8.7 emissivity 1 1 1 }";
     let scene = |rows: &str| format!("{EYE} {rows} }} {room}").replace("pixeldim 5 5", "pixeldim 64 48");
     let (_, said) = middle(&folder, &scene(""), &[]);
     assert!(said.contains("matt surfaces do not light each other") && said.contains("`bounces 4`"), "{said}");

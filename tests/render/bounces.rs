@@ -1,15 +1,20 @@
 //! Light that goes on from surface to surface.
 
-use crate::common::model;
+use crate::common::{model, model_in};
 use glam::DVec3;
+use std::fs;
 use tabray::render::plan::Plan;
 use tabray::render::trace;
+use tabray::scene::model::Model;
 use tabray::tools::threads::renderer_with;
 
 /// Returns the mean of an image's pixels, before they become bytes.
 fn mean(text: &str) -> DVec3 {
-    let model = model(text);
-    let (plan, [width, height]) = (Plan::new(&model), model.camera.value.pixels);
+    mean_of(&model(text))
+}
+
+fn mean_of(model: &Model) -> DVec3 {
+    let (plan, [width, height]) = (Plan::new(model), model.camera.value.pixels);
     let pixels = (0..width * height).map(|index| trace::pixel(&plan, index % width, index / width));
     pixels.sum::<DVec3>() / (width * height) as f64
 }
@@ -51,6 +56,21 @@ fn a_panel_that_emits_lights_a_floor_as_a_lamp_does() {
          fplane lamp { material glow point -0.5 2 -0.5 normal 0 -1 0 xdir 1 0 0 dimensions 2 1 }",
     ));
     assert!(((by_chance - by_aim) / by_aim).abs().max_element() < 0.02, "{by_chance} for {by_aim}");
+}
+
+#[test]
+fn the_emission_of_a_file_s_material_lights_a_floor() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("room for a file");
+    write("lamp.mtl", "newmtl glow\nKd 0 0 0\nKe 3 3 3\n");
+    let corners = "v -0.5 2 -0.5\nv 1.5 2 -0.5\nv 1.5 2 0.5\nv -0.5 2 0.5\n";
+    write("lamp.obj", &format!("mtllib lamp.mtl\n{corners}usemtl glow\nf 1 2 3 4\n"));
+    let lamp = "mesh lamp { material matt file lamp.obj materials file }";
+    let by_file = mean_of(&model_in(folder.path(), &floor(1, lamp)));
+    let glow = "material glow { emission 3 3 3 }
+                fplane lamp { material glow point -0.5 2 -0.5 normal 0 -1 0 xdir 1 0 0 dimensions 2 1 }";
+    let by_material = mean(&floor(1, glow));
+    assert!((by_file - by_material).abs().max_element() < 1e-9, "{by_file} for {by_material}");
 }
 
 #[test]

@@ -217,6 +217,10 @@ impl Shader for WithoutReflections {
         Rgb::ZERO
     }
 
+    fn emission(&self, at: &SurfacePoint) -> Rgb {
+        self.0.emission(at)
+    }
+
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         self.0.tile(at)
     }

@@ -7,6 +7,7 @@
 //! stands in for light from everywhere. Shadow rays pass through glass in straight lines, so lamps behind glass are met
 //! by aim, too; after a mirror, no aim is possible, and what shines there counts.
 
+use super::arrays::VectorList;
 use super::context::{ShadingScratch, Tracer};
 use super::draws::RIM_POINTS;
 use super::ray_group::RayGroup;
@@ -17,6 +18,7 @@ use tabray_world::directions::by_cosine;
 use tabray_world::material::Rgb;
 use tabray_world::scene::kind::Kind;
 use tabray_world::scene::model::Object;
+use tabray_world::surface_point::SurfacePoint;
 
 /// The light that counts where a ray ends, besides what it passes on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -42,14 +44,23 @@ impl CountedLight {
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Returns the light that an object's surface gives of itself to the rays of the current packet, besides its
-    /// ambient light; `None` where it also shows that.
-    pub(super) fn emitted(&self, object: &Object) -> Option<Rgb> {
+    /// Adds what an object's surface gives by itself to its ambient light, or takes its place where that does not count.
+    pub(super) fn emit(&self, object: &Object, surface: &Surface, count: usize, colours: &mut VectorList) {
+        let Object { material, shader, .. } = object;
         let is_lamp = object.args.entity().kind() == Kind::Light;
-        match self.counted {
-            CountedLight::All => None,
-            CountedLight::EmissionAndLamps if is_lamp => None,
-            _ => Some(object.material.emission),
+        if self.counted == CountedLight::All || self.counted == CountedLight::EmissionAndLamps && is_lamp {
+            if material.emission != Rgb::ZERO {
+                (0..count).for_each(|lane| colours.set(lane, colours.get(lane) + material.emission));
+            }
+            return;
+        }
+        for lane in 0..count {
+            let own = match (surface.look, surface.seen.get(lane)) {
+                (Some(_), _) => Rgb::ZERO,
+                (None, Some(at)) => shader.emission(at),
+                (None, None) => shader.emission(&SurfacePoint::at(surface.points.get(lane))),
+            };
+            colours.set(lane, material.emission + own);
         }
     }
 

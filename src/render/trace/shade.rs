@@ -6,6 +6,7 @@ use super::context::{HitScratch, ShadingScratch, Tracer};
 use super::light;
 use super::mixed;
 use super::ray_group::RayGroup;
+use super::scatter::CountedLight;
 use super::surface::{Errors, SeenPatches, Surface};
 use crate::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::plan::depth::{Branch, STEPS, step};
@@ -187,10 +188,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
-        if let Some(emitted) = self.emitted(object) {
-            colours.fill(count, emitted);
-        } else if material.emission != Rgb::ZERO {
-            (0..count).for_each(|lane| colours.set(lane, colours.get(lane) + material.emission));
+        if self.counted != CountedLight::All || material.emission != Rgb::ZERO {
+            self.emit(object, surface, count, colours);
         }
         if self.scratch.path_hashes.is_on {
             let nearest = (self.depth == 0).then_some(distances);

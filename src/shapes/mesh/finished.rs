@@ -196,6 +196,13 @@ impl Shader for Finished {
         material.ambient * self.colour(&spot, finish, at.patch) + emission
     }
 
+    fn emission(&self, at: &SurfacePoint) -> Rgb {
+        let spot = self.spot(at.position);
+        let given =
+            |finish: &Finish| finish.emission * self.light(&spot, finish.emissions.as_ref(), at.patch);
+        spot.finish.map_or(Rgb::ZERO, given)
+    }
+
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
         let spot = self.spot(at.position);
         let Some(finish) = spot.finish else { return material.diffuse * self.tint(&spot) };

@@ -94,6 +94,10 @@ impl Shader for PlacedShader {
         self.own().specular(material, &self.object_point(at))
     }
 
+    fn emission(&self, at: &SurfacePoint) -> Rgb {
+        self.own().emission(&self.object_point(at))
+    }
+
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         self.own().tile(&self.object_point(at))
     }

@@ -28,6 +28,10 @@ impl Shader for PartShader {
         self.0.shader.specular(material, at)
     }
 
+    fn emission(&self, at: &SurfacePoint) -> Rgb {
+        self.0.shader.emission(at)
+    }
+
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         self.0.shader.tile(at)
     }

@@ -126,8 +126,8 @@ fn unlit(model: &Model, places: &[[usize; 2]], levels: &Levels) -> Option<Remark
     plan.camera.samples = 1;
     plan.max_depth = MAX_DEPTH;
     let survey = Survey::of(&plan, places);
-    let blocked = survey.lamps.iter().map(|lamp| lamp.blocked).max()?;
-    (blocked as f64 > UNLIT * places.len() as f64).then(|| Remark {
+    let unlit = survey.lamps.iter().map(|lamp| lamp.blocked + lamp.behind).max()?;
+    (unlit as f64 > UNLIT * places.len() as f64).then(|| Remark {
         message: format!(
             "{:.0} % of the image is almost black: it lies in shadow, and matt surfaces do not light each other",
             100.0 * share
