@@ -248,7 +248,7 @@ fn what_beginners_write_is_told_with_the_cure() {
         ("ambient 0.5 0.5 1", "ambient red", "`ambient 1 0 0`"),
         ("ambient 0.5 0.5 1", "ambient rgb(0.5, 0.5, 1)", "write `ambient 0.5 0.5 1`"),
         ("ambient 0.5 0.5 1", "ambient rgb(255,0,51)", "write `ambient 1 0 0.2`"),
-        ("ambient 0.5 0.5 1", "ambient <0.5, 0.5, 1>", "write `ambient 0.5 0.5 1`"),
+        ("ambient 0.5 0.5 1", "ambient <0.5, 0.5, 1>", "write `0.5 0.5 1`"),
         ("ambient 0.5 0.5 1", "ambient \"0.5 0.5 1\"", "write numbers without quotes: `0.5 0.5 1`"),
         ("160 120", "160x120", "write `pixeldim 160 120`"),
         ("160 120", "160,120", "write `pixeldim 160 120`"),

@@ -2,11 +2,9 @@
 
 mod survey;
 
-use crate::clock;
 use crate::threads::renderer_with;
 use glam::DVec3;
 use std::ops::Range;
-use std::time::Duration;
 use survey::Survey;
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::render::flaws::Flaws;
@@ -46,9 +44,6 @@ const NAMED: usize = 3;
 /// The number of reflections and transmissions of the rays with which an image is tried.
 const MAX_DEPTH: usize = 4;
 
-/// The CPU time for pixels that are tried, as estimated from fewer of them.
-const PATIENCE: Duration = Duration::from_secs(2);
-
 /// The maximum number of pixels that are tried with all reflections and transmissions, if the image is black with fewer.
 /// Between mirrors, such a pixel may take thousands of rays.
 const MAX_DEEP: usize = 80;
@@ -65,23 +60,24 @@ pub struct Remark {
 /// Returns the remark on a part of an image with these levels, at most one. Columns count from the left and
 /// rows from the top.
 pub fn remark(plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<Remark> {
-    remark_on("the image is", plan, &places(&plan.camera, part), levels)
+    remark_on("the image is", plan, part, levels)
 }
 
 /// Returns the remark on a part of an image. A remark on black begins with these words.
-fn remark_on(image: &str, plan: &Plan, places: &[[usize; 2]], levels: &Levels) -> Option<Remark> {
+fn remark_on(image: &str, plan: &Plan, part: [&Range<usize>; 2], levels: &Levels) -> Option<Remark> {
     if levels.pixels == 0 || plan.model.objects.is_empty() {
         return None;
     }
-    empty(plan, places).or_else(|| {
+    let places = places(&plan.camera, part);
+    empty(plan, &places).or_else(|| {
         let is_black = levels.brightest < DARK;
         if !is_black && !is_burnt(levels) {
-            return flat(plan.model).or_else(|| unlit(plan.model, places, levels));
+            return flat(plan.model).or_else(|| unlit(plan.model, &places, levels));
         }
         // The plan of a picture leaves out lights.
         let mut plan = Plan::new(plan.model);
         plan.max_depth = MAX_DEPTH;
-        let survey = Survey::of(&plan, places);
+        let survey = Survey::of(&plan, &places);
         if is_black {
             Some(black(image, &plan, &survey, levels.brightest))
         } else {
@@ -157,25 +153,14 @@ fn tried_here(model: &Model) -> Option<Remark> {
         levels
     };
     plan.max_depth = MAX_DEPTH;
-    // Where a pixel takes long, few must do.
-    let (mut places, mut found) = (places, Levels::default());
-    for [step, next] in [[256, 16], [16, 1], [1, 1]] {
-        let start = clock::now();
-        let some: Vec<_> = places.iter().skip(step / 2).step_by(step).copied().collect();
-        found = levels(&plan, &some);
-        let of_next = (clock::now() - start) * (step / next) as u32;
-        if step == 1 || of_next > PATIENCE {
-            places = some;
-            break;
-        }
-    }
+    let mut found = levels(&plan, &places);
     plan.max_depth = usize::MAX;
     if found.brightest < DARK && plan.depth.is_some() {
         let step = places.len().div_ceil(MAX_DEEP).max(1);
         let few: Vec<_> = places.iter().skip(step / 2).step_by(step).copied().collect();
         found = levels(&plan, &few);
     }
-    remark_on("the image seems to be", &plan, &places, &found)
+    remark_on("the image seems to be", &plan, part, &found)
 }
 
 /// Returns pixels spread over a part of an image, by column and row from the bottom.
