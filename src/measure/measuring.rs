@@ -7,16 +7,21 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 use tabray_cli::process::interrupt::{self, InterruptAction};
 use tabray_cli::process::messages;
 use tabray_cli::process::progress::Progress;
+use tabray_tools::clock;
 
 /// The time between two lines of progress.
 const LINES: Duration = Duration::from_secs(10);
 
 /// The time that a measurement under way may take beyond its limit, as a divisor of the limit.
 const GRACE: u32 = 10;
+
+/// How much longer than on an idle machine a measurement may take on a busy one, where the user gives no limit.
+const BUSY: u32 = 10;
 
 /// A measurement under way.
 pub struct Work {
@@ -26,46 +31,71 @@ pub struct Work {
     kept: Panels,
 }
 
+/// The time that a measurement may take.
+#[derive(Clone, Copy)]
+pub struct Limit {
+    /// The time.
+    pub time: Duration,
+    /// Whether the time counts that the machine spends on other work.
+    is_of_wall: bool,
+}
+
+impl Limit {
+    /// Limits a measurement to a time that the user has given, or to this CPU time on each core.
+    pub fn new(given: Option<Duration>, usual: Duration) -> Self {
+        // No measurement takes years, and sums of times must not overflow.
+        let time = given.unwrap_or(usual).min(Duration::from_secs(1 << 30));
+        Self { time, is_of_wall: given.is_some() }
+    }
+
+    /// Returns the time until a measurement under way is no longer waited for: a little longer than the limit.
+    pub fn last(self) -> Duration {
+        let time = if self.is_of_wall { self.time } else { self.time * BUSY };
+        time.saturating_add(time / GRACE).saturating_add(Duration::from_millis(500))
+    }
+}
+
 /// The time for a measurement, which its panels share.
 pub struct Time {
     start: Instant,
-    limit: Duration,
-    /// The times at which the current panel began and must end.
-    panel: [Instant; 2],
+    limit: Limit,
+    /// The times from the start at which the current panel began and must end.
+    panel: [Duration; 2],
 }
 
 impl Time {
     /// Starts the time of a measurement.
-    pub fn within(limit: Duration) -> Self {
-        // No measurement takes years, and sums of times must not overflow.
-        let limit = limit.min(Duration::from_secs(1 << 30));
-        let now = Instant::now();
-        Self { start: now, limit, panel: [now, now.checked_add(limit).unwrap_or(now)] }
+    pub fn within(limit: Limit) -> Self {
+        Self { start: Instant::now(), limit, panel: [Duration::ZERO, limit.time] }
+    }
+
+    /// Returns the time since the start that counts.
+    fn spent(&self) -> Duration {
+        if self.limit.is_of_wall {
+            return self.start.elapsed();
+        }
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        clock::of_process() / cores as u32
     }
 
     /// Gives the next panel its share of the remaining time, of this many panels.
     pub fn share(&mut self, panels: usize) {
-        let now = Instant::now();
-        let left = self.limit.saturating_sub(self.start.elapsed());
+        let now = self.spent();
+        let left = self.limit.time.saturating_sub(now);
         // Some panels take less than their share, so that one may take more.
         let share = if panels > 1 { left.mul_f64(1.5 / (panels as f64 + 0.5)) } else { left };
-        self.panel = [now, now.checked_add(share).unwrap_or(now)];
+        self.panel = [now, now + share];
     }
 
     /// Breaks if the time of the current panel is over.
     pub fn check(&self) -> ControlFlow<()> {
-        if Instant::now() >= self.panel[1] { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.spent() >= self.panel[1] { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// Tells whether half of the current panel's time is over.
     pub fn is_late(&self) -> bool {
         let [from, to] = self.panel;
-        from.elapsed() > (to - from) / 2
-    }
-
-    /// Returns the time until a measurement under way is no longer waited for: a little longer than the limit.
-    pub fn last(limit: Duration) -> Duration {
-        limit.saturating_add(limit / GRACE).saturating_add(Duration::from_millis(500))
+        2 * self.spent().saturating_sub(from) > to - from
     }
 }
 
@@ -78,7 +108,7 @@ type Panels = Arc<Mutex<Vec<Panel>>>;
 
 impl Work {
     /// Starts work that is to end within a time.
-    pub fn within(limit: Duration) -> Self {
+    pub fn within(limit: Limit) -> Self {
         let (progress, units, kept) = (Progress::new(0), Units::default(), Panels::default());
         Self { progress, time: Time::within(limit), units, kept }
     }

@@ -287,10 +287,14 @@ fn every_command_ends_soon_at_every_signal_in_every_stage() {
                 _ => [(Some(130), None), (None, Some(signal as i32))].contains(&ended),
             };
             assert!(is_sound, "{what}: {status}");
-            // A render keeps what it has done, and nobody leaves anything else.
-            let is_render = stage == Stage::Working && words.starts_with("render");
+            // A render and a chart keep what they have done, and nobody leaves anything else.
             for name in names().difference(&before) {
-                assert!(is_render && name.starts_with("x."), "{what} leaves {name}");
+                let is_kept = match words.split(' ').next() {
+                    Some("render") => name.starts_with("x."),
+                    Some("chart") => name.contains("-chart."),
+                    _ => false,
+                };
+                assert!(is_kept && stage == Stage::Working, "{what} leaves {name}");
                 fs::remove_file(folder.path().join(name)).expect("a file");
             }
             println!("{:.2} s  {what}", time.as_secs_f64());

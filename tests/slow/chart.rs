@@ -107,6 +107,40 @@ fn wrong_hits_are_counted_where_methods_have_them_and_the_default_has_none() {
     assert!(png.width() >= 1040 && png.height() > 1000, "{} x {}", png.width(), png.height());
 }
 
+/// The number of hits of a panel's camera rays.
+fn hits(panel: &Panel) -> usize {
+    let (_, rest) = panel.note.split_once("rays, ").expect("the rays");
+    rest.split_once(" hits").expect("the hits").0.parse().expect("a number")
+}
+
+#[test]
+fn thin_things_get_rays_aimed_at_them() {
+    let wires = "camera eye { pixeldim 160 120 worlddim 8 6 viewpoint 4 3 7 } material m { ambient 1 1 1 }
+        repeat i 12 { cylinder wire { material m base \"0.5+0.6*i\" 1 -2 direction 0.1 1 0 height 4 radius 0.01 } }
+        plane floor { material m normal 0 1 0 point 0 0 0 }";
+    let chart = measured(wires, usize::MAX);
+    let found = hits(panel(&chart, "camera rays"));
+    assert!(found > 12 * 30, "{found} hits of 12 wires and a floor");
+}
+
+#[test]
+fn a_chart_of_many_balls_is_whole_within_its_time() {
+    let folder = TempDir::new().expect("a folder");
+    let balls = "camera eye { pixeldim 320 240 worlddim 8 6 viewpoint 4 3 7 samples 4 }
+        material m { ambient 0.3 0.3 0.3 diffuse 3 2 1 }
+        repeat i 1600 { sphere ball { material m center \"0.2*(i - 40*floor(i/40))\" \"0.15*floor(i/40)\" -2 radius 0.07 } }
+        light lamp { location 1 7 3 emissivity 9 9 9 }";
+    std::fs::write(folder.path().join("balls.ray"), balls).expect("a file");
+    let args = ["chart", "balls.ray", "-o", "balls.json", "--time-limit", "60s"];
+    let output = cargo_bin_cmd!("tabray").current_dir(&folder).args(args).output().expect("it runs");
+    let [said, told] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
+    assert!(output.status.success(), "{told}");
+    assert!(
+        !said.contains("Not everything was measured") && said.contains("the whole image"),
+        "{said}{told}"
+    );
+}
+
 /// Tells whether a proof contradicts a hit of any pixel, with each object of a scene alone.
 fn is_contradicted(load: &dyn Fn() -> Model) -> bool {
     (0..load().objects.len()).any(|index| {
@@ -192,7 +226,7 @@ fn sobol_reaches_with_24_samples_what_random_reaches_with_64() {
 
 #[test]
 fn what_breaks_off_keeps_what_is_measured() {
-    let chart = measured(EDGE, 3_000_000);
+    let chart = measured(EDGE, 1_000_000);
     assert!(!chart.is_whole && !chart.panels.is_empty() && chart.panels.len() < 4, "{}", chart.panels.len());
     assert!(chart::words(&chart).ends_with("Not everything was measured: these are the results by then.\n"));
 }

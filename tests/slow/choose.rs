@@ -4,7 +4,7 @@
 //! `TABRAY_SCENES=200 cargo test --release --test slow choose -- --nocapture` measures 200 scenes in place of few, and
 //! prints tables; `TABRAY` names a program other than the one that is built.
 
-mod free;
+pub mod free;
 mod made;
 
 use crate::common::{model_in, registry};

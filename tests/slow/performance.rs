@@ -30,7 +30,7 @@ fn of(who: UsageWho) -> (Duration, i64) {
 }
 
 /// Returns the same of all child processes that have ended.
-fn of_children() -> (Duration, i64) {
+pub fn of_children() -> (Duration, i64) {
     of(UsageWho::RUSAGE_CHILDREN)
 }
 

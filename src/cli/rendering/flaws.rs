@@ -31,8 +31,12 @@ pub fn report_proofs(proofs: Proofs, plan: &Plan) {
             levels(proofs.mean()),
         ),
     };
+    let rounding = match plan.camera.rules {
+        Rules::Notes => "; the bytes are rounded down from that",
+        Rules::Free => "",
+    };
     messages::note(&format!(
-        "{share} % of the pixels are certain to be within {} of 255 levels{rest}; the bytes are rounded down from that",
+        "{share} % of the pixels are certain to be within {} of 255 levels{rest}{rounding}",
         short(255.0 * error)
     ));
 }
@@ -97,15 +101,14 @@ fn warn_of_cuts(cuts: &BudgetCuts, rules: Rules) {
         (false, _) => "off by an unknown amount: nothing bounds the light beyond".to_owned(),
     };
     let budget = match rules {
-        Rules::Notes => format!("the work of {MAX_RAYS} simple rays for each primary ray"),
-        Rules::Free => {
-            format!(
-                "{MAX_TREE} rays for each pixel, shared by its samples, and the work of {MAX_RAYS} simple ones"
-            )
-        }
+        Rules::Notes => format!("each ray from the viewer may take the work of {MAX_RAYS} simple rays"),
+        Rules::Free => format!(
+            "the samples of a pixel together may take {MAX_TREE} rays, and the work of {MAX_RAYS} simple ones"
+        ),
     };
+    let pixels = count(cuts.pixels as usize, "pixel");
     messages::warning(
-        &format!("{} cut off at the ray budget ({budget}), {most}", count(cuts.pixels as usize, "pixel")),
+        &format!("{pixels} not finished, {most}: {budget}"),
         Some(
             "mirrors or glass spawn too many rays, or rays that are too costly: a lower `specular` or `transparency` \
             ends them sooner",

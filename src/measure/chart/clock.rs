@@ -28,12 +28,14 @@ pub fn work(choices: usize) -> usize {
 }
 
 /// Times the work of choices, by index. The work of each consists of `count` equal items; the times are for one item.
+/// `effort` is the part of the usual time that is spent.
 pub fn rounds(
-    choices: usize,
-    count: usize,
+    (choices, count): (usize, usize),
+    effort: f64,
     mut work: impl FnMut(usize),
     progress: &mut dyn Progress,
 ) -> ControlFlow<(), Vec<Times>> {
+    let patience = CHOICE_TIME.mul_f64(effort);
     let mut repeats = vec![1_u32; choices];
     let mut all = vec![Vec::new(); choices];
     let mut waits = vec![Duration::ZERO; choices];
@@ -46,7 +48,7 @@ pub fn rounds(
     'rounds: for round in 0..MAX_ROUNDS {
         for choice in 0..choices {
             let spent: Duration = all[choice].iter().sum::<Duration>() * repeats[choice];
-            if round < MIN_ROUNDS || spent < CHOICE_TIME {
+            if round < MIN_ROUNDS || spent < patience {
                 let (took, waited) = time(|| (0..repeats[choice]).for_each(|_| work(choice)));
                 all[choice].push(took / repeats[choice]);
                 waits[choice] += waited / repeats[choice];

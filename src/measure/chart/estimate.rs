@@ -78,10 +78,21 @@ const FEWEST: usize = 128;
 /// known.
 pub fn estimates(
     load: Load,
-    (goal, is_certain): (Goal, bool),
+    goal: (Goal, bool),
     beginning: f64,
     progress: &mut dyn Progress,
 ) -> io::Result<Estimates> {
+    estimates_by(load, goal, (beginning, 1.0), progress)
+}
+
+/// Measures as [`estimates`] does, with this part of the usual work.
+fn estimates_by(
+    load: Load,
+    (goal, is_certain): (Goal, bool),
+    (beginning, effort): (f64, f64),
+    progress: &mut dyn Progress,
+) -> io::Result<Estimates> {
+    let part = |usual: usize| (usual as f64 * effort) as usize;
     let threads = renderer_with(0)?;
     let model = load(None)?;
     let own = model.camera.value.accuracy;
@@ -102,11 +113,11 @@ pub fn estimates(
     let right = if matches!(own, Accuracy::Exact | Accuracy::Strict) { 0 } else { 1 };
     let mut truth = plan(models[right].1);
     let mut small = SmallThings::find(&truth, &threads, (goal.error(), is_certain), confirm::FEWEST);
-    small.measure(&mut truth, &threads, (goal.error(), SMALL[usize::from(is_certain)]), progress)?;
+    small.measure(&mut truth, &threads, (goal.error(), part(SMALL[usize::from(is_certain)])), progress)?;
     let found = small.pixels();
     let special = if small.is_measured() { [&found[..], &[]] } else { [&[], &found[..]] };
-    let strata = Strata::new(&mut truth, &threads, LOOKED_AT, special);
-    let mut study = Study { threads, models: &models, right, kept, timings, goal, is_certain };
+    let strata = Strata::new(&mut truth, &threads, part(LOOKED_AT), special);
+    let mut study = Study { threads, models: &models, right, kept, timings, goal, is_certain, effort };
     let mut last = None;
     for stage in STAGES {
         let estimates = study.measure(stage, (&strata, &small), progress)?;
@@ -137,14 +148,14 @@ pub fn estimates(
     Ok(estimates)
 }
 
-/// Compares accuracies and numbers of samples together, as [`estimates`] measures them.
+/// Compares accuracies and numbers of samples together, as [`estimates`] measures them with this part of the usual work.
 ///
 /// # Errors
 /// Returns the errors of [`estimates`].
-pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel> {
+pub(super) fn panel(load: Load, effort: f64, progress: &mut dyn Progress) -> io::Result<Panel> {
     let model = load(None)?;
     let Sensor { samples, pixels: [width, height], .. } = model.camera.value;
-    let estimates = estimates(load, (Goal::None, false), 0.0, progress)?;
+    let estimates = estimates_by(load, (Goal::None, false), (0.0, effort), progress)?;
     let all = (width * height) as f64;
     let point = |one: &Estimate| {
         let seconds = one.cost.tracing.mean / all;
@@ -179,8 +190,9 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
 struct MeasuredPixels<'m> {
     /// The plan whose colours count as right.
     truth: Plan<'m>,
-    /// Their errors for each accuracy.
+    /// Their errors for each accuracy, and the place of that of the truth among these.
     errors: Vec<Errors>,
+    as_right: Option<usize>,
     rights: Vec<Right>,
     /// Whether time has run out.
     is_short: bool,
@@ -202,8 +214,13 @@ impl MeasuredPixels<'_> {
                 break;
             }
             let mut colours = Colours { threads, pixels, progress };
-            let rights = colours.right(&mut self.truth, against / 2)?;
+            let found = colours.right_and_errors(&mut self.truth, against / 2, samples)?;
+            let (rights, expected): (Vec<_>, Vec<_>) = found.into_iter().unzip();
             self.add(&mut colours, samples, plans, rights)?;
+            // The accuracy of the right colours.
+            if let Some(errors) = self.as_right.and_then(|place| self.errors.get_mut(place)) {
+                errors.expect(samples, &expected);
+            }
             self.is_short = progress.is_late();
         }
         Ok(())
@@ -238,6 +255,8 @@ struct Study<'m> {
     timings: Timings,
     goal: Goal,
     is_certain: bool,
+    /// The part of the usual work that is done, at most 1.
+    effort: f64,
 }
 
 impl Study<'_> {
@@ -267,7 +286,7 @@ impl Study<'_> {
         let mut estimates: Vec<_> = measured.iter_mut().map(estimate).collect();
         let met = self.goal.first_meeting(&estimates).map(|met| met.most);
         for (one, estimate) in measured.iter_mut().zip(&mut estimates) {
-            if met == Some(estimate.most) || self.goal.is_none() {
+            if met == Some(estimate.most) || self.goal.is_none() && self.effort == 1.0 {
                 needed::refine(model, &self.threads, one.limits, &mut one.timing);
                 estimate.cost = self.timings.cost_of(estimate.rays, &one.timing);
             }
@@ -297,7 +316,7 @@ impl Study<'_> {
     fn refine(&mut self, index: usize, estimates: &mut [Estimate], plan: &mut Plan, progress: &dyn Progress) {
         let met = self.goal.first_meeting(estimates).map(|met| met.samples);
         for estimate in estimates {
-            if met == Some(estimate.samples) || self.goal.is_none() {
+            if met == Some(estimate.samples) || self.goal.is_none() && self.effort == 1.0 {
                 let choice = (index, estimate.samples);
                 self.timings.refine(choice, (plan, &self.threads), |_| !progress.is_late());
                 estimate.cost = self.timings.cost(index, estimate.samples);
@@ -324,6 +343,7 @@ impl Study<'_> {
         let mut pixels = MeasuredPixels {
             truth: plan(self.models[self.right].1),
             errors: vec![Errors::new(samples.len()); plans.len()],
+            as_right: self.kept.iter().position(|index| *index == self.right),
             rights: Vec::new(),
             is_short: false,
         };
@@ -333,7 +353,7 @@ impl Study<'_> {
         pixels.add(&mut colours, samples, &mut plans, if alone > 0 { small.right() } else { Vec::new() })?;
         let of_pixel = f64::from(stage.rays_of_pixel(plans.len()));
         let most = |picture: u32| {
-            let rays = (PART * f64::from(picture) * all as f64).clamp(RAYS[0], RAYS[1]);
+            let rays = self.effort * (PART * f64::from(picture) * all as f64).clamp(RAYS[0], RAYS[1]);
             (alone + (rays / of_pixel) as usize).min(strata.count())
         };
         // Of a small image, all pixels are measured.

@@ -8,8 +8,10 @@ use super::judgement::{Judgement, Known, Pair, Truth};
 use super::packets::Packet;
 use super::progress::Progress;
 use super::study::Study;
+use glam::{DVec2, DVec3};
+use std::array;
 use std::hint::black_box;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use tabray_core::geometry::ray::{MISS, Ray, RayRange};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::geometry::sight::Sight;
@@ -19,6 +21,7 @@ use tabray_core::shapes::by_method::is_searched;
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::text::visible;
 use tabray_core::world::any_shape::AnyShape;
+use tabray_core::world::camera::Projected;
 use tabray_core::world::certify::{Enclosure, Precision};
 use tabray_exact::roots::bisection::bisect;
 use tabray_tools::sampling::places::{spread, tiles};
@@ -28,6 +31,15 @@ pub const PAIRS: [usize; 2] = [20_000, 4_000];
 
 /// The approximate number of pairs that are timed.
 const TIMED: usize = 2_000;
+
+/// The number of rays that are aimed at an object that few camera rays hit, and the distances in pixels from the middle of
+/// one that shows it, along each axis, within which half of them and the other half pass.
+const AIMED: usize = 128;
+const WITHIN: f64 = 0.05;
+const NEAR: f64 = 4.0;
+
+/// The maximum number of pairs of a pixel and an object up to which the whole image is looked at for each object.
+const MAX_SCANNED: usize = 1 << 23;
 
 /// The work of finding the true hit of one pair, in units of [`Progress`].
 const TRUTH: usize = 30;
@@ -40,21 +52,100 @@ pub struct Set {
     is_searched: bool,
 }
 
+/// The pixels whose middle ray hits an object.
+pub struct Scan {
+    object: usize,
+    hit: Vec<[usize; 2]>,
+    /// The pixels that differ from their left neighbours, and whether they are hit.
+    edges: Vec<([usize; 2], bool)>,
+}
+
+/// Scans the image for the objects whose hits can be proven.
+pub fn scans(study: &Study) -> Vec<Scan> {
+    let model = &study.candidates[study.strict].model;
+    let objects: Vec<_> = (0..model.objects.len()).collect();
+    let scan =
+        |object: &usize| is_provable(model, &model.objects[*object].shape).then(|| Scan::new(model, *object));
+    study.threads.run(|| each(&objects, scan)).into_iter().flatten().collect()
+}
+
+impl Scan {
+    fn new(model: &Model, object: usize) -> Self {
+        let [width, height] = model.camera.value.pixels;
+        let mut scan = Self { object, hit: Vec::new(), edges: Vec::new() };
+        let [columns, rows] = region(model, object).unwrap_or([0..width, 0..height]);
+        for y in rows {
+            let mut last = hits(model, object, [columns.start as f64, y as f64]);
+            for x in columns.clone() {
+                let here = hits(model, object, [x as f64, y as f64]);
+                if here {
+                    scan.hit.push([x, y]);
+                }
+                if here != last {
+                    scan.edges.push(([x, y], here));
+                }
+                last = here;
+            }
+        }
+        scan
+    }
+
+    /// Returns this many places, or one more, half of them in pixels that show the object, and half in pixels near those.
+    fn aimed(&self, count: usize, [width, height]: [usize; 2]) -> Vec<[f64; 2]> {
+        let most = DVec2::new(width as f64 - 1.0, height as f64 - 1.0);
+        let near = |index: usize| {
+            let [x, y] = self.hit[index * self.hit.len().max(count / 2) / (count / 2) % self.hit.len()];
+            let at = DVec2::new(x as f64, y as f64);
+            // Spread over a square, by a sequence of Korobov's kind.
+            let turn = |by: f64| 2.0 * (by * index as f64).fract() - 1.0;
+            let off = DVec2::new(turn(0.754_877_666_246_693), turn(0.569_840_290_998_053));
+            [WITHIN, NEAR].map(|far| (at + far * off).clamp(DVec2::ZERO, most))
+        };
+        (0..count.div_ceil(2)).flat_map(near).map(|at| at.to_array()).collect()
+    }
+}
+
+/// Returns the columns and rows that may show an object of a scene with many, where its bounds tell.
+fn region(model: &Model, object: usize) -> Option<[Range<usize>; 2]> {
+    let camera = &model.camera.value;
+    let [width, height] = camera.pixels;
+    if model.objects.len() * width * height <= MAX_SCANNED
+        || camera.camera.corners(camera.pixels, 0.0).is_none()
+    {
+        return None;
+    }
+    let bounds = model.objects[object].shape.facts().bounds?;
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for corner in 0..8 {
+        let side = |axis: usize| if corner >> axis & 1 == 0 { bounds.low[axis] } else { bounds.high[axis] };
+        let Projected::At(at) = camera.project(DVec3::from_array(array::from_fn(side))) else { return None };
+        (low, high) = (low.min(at), high.max(at));
+    }
+    let range = |side: usize, end: usize| {
+        let clamped = |at: f64| at.clamp(0.0, end as f64) as usize;
+        clamped(low[side] - 1.0)..clamped(high[side] + 2.0)
+    };
+    Some([range(0, width), range(1, height)])
+}
+
+/// Tells whether the ray through a place hits an object.
+fn hits(model: &Model, object: usize, [x, y]: [f64; 2]) -> bool {
+    model.objects[object].shape.distance(&model.camera.value.ray(x, y), &RayRange::ALL) != MISS
+}
+
 /// Returns all sets of a scene, with about these numbers of pairs of a ray and an object in one of camera rays and in
 /// one of grazing rays.
-pub fn sets(model: &Model, [of_camera, of_grazing]: [usize; 2]) -> Vec<Set> {
+pub fn sets(model: &Model, scans: &[Scan], [of_camera, of_grazing]: [usize; 2]) -> Vec<Set> {
     let mut sets = Vec::new();
     for is_of_roots in [true, false] {
-        let objects = model.objects.iter().enumerate();
-        let group: Vec<usize> = objects
-            .filter(|(_, object)| is_searched(&object.shape) == is_of_roots)
-            .filter(|(_, object)| is_provable(model, &object.shape))
-            .map(|(index, _)| index)
+        let group: Vec<&Scan> = scans
+            .iter()
+            .filter(|scan| is_searched(&model.objects[scan.object].shape) == is_of_roots)
             .collect();
         if group.is_empty() {
             continue;
         }
-        let names: Vec<_> = group.iter().map(|index| model.objects[*index].args.name()).collect();
+        let names: Vec<_> = group.iter().map(|scan| model.objects[scan.object].args.name()).collect();
         let what = visible(&list(names)).into_owned();
         let mut add = |kind: &str, packets: Vec<Packet>| {
             if !packets.is_empty() {
@@ -107,7 +198,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
         }
     };
     let count = timed.iter().map(|packet| packet.len()).sum();
-    let times = clock::rounds(candidates.len(), count, work, progress)?;
+    let times = clock::rounds((candidates.len(), count), study.effort, work, progress)?;
     let moved = moved_by_rounding(study, set, &truths);
     let truths: Vec<_> = truths.iter().flatten().map(|known| &known.truth).collect();
     let hits = truths.iter().filter(|truth| matches!(truth, Truth::Hit { .. })).count();
@@ -250,52 +341,52 @@ fn is_provable(model: &Model, shape: &AnyShape) -> bool {
     places.any(is_certain)
 }
 
-/// Returns rays through the centres of pixels, in the packets in which a render traces them.
-fn camera(model: &Model, group: &[usize], pairs: usize) -> Vec<Packet> {
+/// Returns rays through the centres of pixels, in the packets in which a render traces them, and rays aimed at the
+/// objects that few of these hit. Of more objects than these are pairs for, some have aimed rays alone.
+fn camera(model: &Model, group: &[&Scan], pairs: usize) -> Vec<Packet> {
     let camera = &model.camera.value;
-    let count = pairs.div_ceil(group.len() * PACKET_SIZE);
+    let all = camera.pixels[0] * camera.pixels[1];
     let mut packets = Vec::new();
-    for tile in tiles(camera.pixels, count) {
-        let places: Vec<_> = tile.into_iter().map(|place| place.map(|at| at as f64)).collect();
-        packets.extend(group.iter().flat_map(|index| Packet::of(*index, camera, &places)));
+    let mut through = 0;
+    if group.len() * PACKET_SIZE <= pairs {
+        for tile in tiles(camera.pixels, pairs.div_ceil(group.len() * PACKET_SIZE)) {
+            let places: Vec<_> = tile.into_iter().map(|place| place.map(|at| at as f64)).collect();
+            packets.extend(group.iter().flat_map(|scan| Packet::of(scan.object, camera, &places)));
+            through += places.len();
+        }
     }
+    // Of an image of which all pixels are looked at, nothing is missing.
+    let is_thin = |scan: &&&Scan| through < all && through * scan.hit.len() < AIMED * all;
+    let thin: Vec<_> = group.iter().filter(is_thin).filter(|scan| !scan.hit.is_empty()).collect();
+    let step = (thin.len() * AIMED).div_ceil(pairs.max(1)).max(1);
+    let aimed = thin.iter().step_by(step);
+    packets.extend(aimed.flat_map(|scan| {
+        Packet::of(scan.object, camera, &scan.aimed(AIMED, camera.pixels)).collect::<Vec<_>>()
+    }));
     packets
 }
 
 /// Returns rays beside the silhouettes of objects, at distances from one pixel width down to 10^-10 of it.
-fn grazing(model: &Model, group: &[usize], pairs: usize) -> Vec<Packet> {
+fn grazing(model: &Model, group: &[&Scan], pairs: usize) -> Vec<Packet> {
     const DIGITS: i32 = 10;
     let camera = &model.camera.value;
-    let [width, height] = camera.pixels;
-    let hits = |x: f64, y: f64, index: usize| {
-        model.objects[index].shape.distance(&camera.ray(x, y), &RayRange::ALL) != MISS
-    };
-    let mut edges = Vec::new();
-    for &index in group {
-        for y in 0..height {
-            let mut last = hits(0.0, y as f64, index);
-            for x in 1..width {
-                let here = hits(x as f64, y as f64, index);
-                if here != last {
-                    edges.push((x, y, index, here));
-                }
-                last = here;
-            }
-        }
-    }
+    let edges: Vec<_> = group
+        .iter()
+        .flat_map(|scan| scan.edges.iter().map(|(pixel, here)| (scan.object, *pixel, *here)))
+        .collect();
     let rays = 2 * (DIGITS as usize + 1);
     let step = edges.len().div_ceil((pairs / rays).max(1)).max(1);
     let mut places_of = vec![Vec::new(); model.objects.len()];
-    for (x, y, index, here) in edges.into_iter().step_by(step) {
-        let y = y as f64;
-        let (_, high) = bisect(|x| hits(x, y, index) == here, (x as f64 - 1.0, x as f64), 0.0);
+    for (index, [x, y], here) in edges.into_iter().step_by(step) {
+        let (x, y) = (x as f64, y as f64);
+        let (_, high) = bisect(|x| hits(model, index, [x, y]) == here, (x - 1.0, x), 0.0);
         for digits in 0..=DIGITS {
             for beside in [-1.0, 1.0] {
                 places_of[index].push([high + beside * 0.1_f64.powi(digits), y]);
             }
         }
     }
-    let packets = |index: &usize| Packet::of(*index, camera, &places_of[*index]).collect::<Vec<_>>();
+    let packets = |scan: &&Scan| Packet::of(scan.object, camera, &places_of[scan.object]).collect::<Vec<_>>();
     group.iter().flat_map(packets).collect()
 }
 

@@ -61,10 +61,10 @@ use tabray_tools::unchecked;
 /// # Errors
 /// Returns the errors of `load` and of starting threads.
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
-    let study = Study::new(load)?;
+    let mut study = Study::new(load)?;
     let mut chart = Chart::empty(scene);
     chart.unchecked = unchecked::of(&Plan::new(&study.candidates[study.default].model));
-    chart.is_whole = study.run(load, &mut chart.panels, progress).is_continue();
+    chart.is_whole = study.run(load, &mut chart.panels, progress);
     Ok(chart)
 }
 
@@ -79,7 +79,7 @@ pub fn wrong_hits(
     progress: &mut dyn Progress,
 ) -> io::Result<Vec<WrongHitsOf>> {
     let study = Study::new(load)?;
-    let sets = hits::sets(&study.candidates[study.strict].model, pairs);
+    let sets = hits::sets(&study.candidates[study.strict].model, &hits::scans(&study), pairs);
     let counts = sets.iter().map_while(|set| hits::wrong(&study, set, progress).continue_value());
     Ok(counts.collect())
 }
@@ -100,9 +100,34 @@ impl Chart {
 /// The measurement of one panel.
 type Part<'p> = Box<dyn FnOnce(&mut dyn Progress) -> ControlFlow<(), Option<Panel>> + 'p>;
 
+/// The parts of the usual work that are done: first a coarse chart, and then each of its panels again.
+const EFFORTS: [f64; 2] = [0.1, 1.0];
+
 impl Study {
-    fn run(&self, load: Load, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
-        let sets = hits::sets(&self.candidates[self.strict].model, hits::PAIRS);
+    /// Measures all panels, coarsely at first. Returns whether there is one of each.
+    fn run(&mut self, load: Load, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> bool {
+        let scans = hits::scans(self);
+        let mut is_whole = false;
+        for effort in EFFORTS {
+            self.effort = effort;
+            is_whole |= self.measure(&scans, load, panels, progress);
+            if !is_whole {
+                break;
+            }
+        }
+        is_whole
+    }
+
+    /// Measures each panel, in place of one that was measured more coarsely. Returns whether all were measured.
+    fn measure(
+        &self,
+        scans: &[hits::Scan],
+        load: Load,
+        panels: &mut Vec<Panel>,
+        progress: &mut dyn Progress,
+    ) -> bool {
+        let sets =
+            hits::sets(&self.candidates[self.strict].model, scans, hits::PAIRS.map(|pairs| self.part(pairs)));
         let candidates = self.candidates.len();
         let works = sets.iter().map(|set| hits::work(set, candidates)).sum::<usize>();
         progress.more(works + pictures::work(self));
@@ -119,7 +144,7 @@ impl Study {
                 pictures::samples(self, pictures::SampledEffect::Shadows, progress)
             }));
         }
-        parts.push(Box::new(|progress| match estimate::panel(load, progress) {
+        parts.push(Box::new(|progress| match estimate::panel(load, self.effort, progress) {
             Ok(panel) => ControlFlow::Continue(Some(panel)),
             Err(_) => ControlFlow::Break(()),
         }));
@@ -128,13 +153,21 @@ impl Study {
             progress.share(left);
             left -= 1;
             match part(progress) {
-                ControlFlow::Continue(panel) => panels.extend(panel),
+                ControlFlow::Continue(Some(panel)) => {
+                    match panels.iter_mut().find(|coarse| coarse.title == panel.title) {
+                        Some(coarse) => *coarse = panel,
+                        None => panels.push(panel),
+                    }
+                }
+                ControlFlow::Continue(None) => {}
                 ControlFlow::Break(()) => is_whole = false,
             }
             progress.kept(panels);
             progress.share(left);
-            progress.done(0)?;
+            if left > 0 && progress.done(0).is_break() {
+                return false;
+            }
         }
-        if is_whole { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        is_whole
     }
 }

@@ -41,12 +41,16 @@ const DEPTHS: [usize; 8] = [0, 1, 2, 3, 4, 6, 8, 12];
 /// The minimum number of pixels of which the true colours must be known.
 const FEWEST: usize = 256;
 
+/// The least number of pixels of which the true colours are computed if there is time, and an eighth of the greatest.
+const LEAST: usize = 1024;
+
 /// The maximum number of object tests for the true colours of one panel of samples: about 0.1 µs each, so 5 s.
 const TRUE_TESTS: usize = 50_000_000;
 
 /// The approximate number of tests in a timed piece of work with one sample per pixel, and the minimum number of tiles.
 const TIMED_TESTS: usize = 25_000;
 const TIMED_TILES: usize = 16;
+const FEWEST_TILES: usize = 4;
 
 /// The maximum number of tests for an image by another method.
 const METHOD_TESTS: usize = 500_000;
@@ -63,12 +67,12 @@ pub(super) enum SampledEffect {
 /// Returns the approximate work of measuring all images, in units of [`Progress`].
 pub fn work(study: &Study) -> usize {
     let kinds = 1 + usize::from(has_size(&study.candidates[study.default].model));
-    let of_images = |count: usize| count * METHOD_TESTS / 10 + clock::work(count);
+    let of_images = |count: usize| count * study.part(METHOD_TESTS) / 10 + clock::work(count);
     let model = &study.candidates[study.default].model;
     let depths = if goes_on(model) { of_images(DEPTHS.len() + 1) } else { 0 };
     of_images(study.candidates.len())
         + depths
-        + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len() + ADAPTIVE.len()))
+        + kinds * (study.part(TRUE_TESTS) / 8 + clock::work(2 * SAMPLES.len() + ADAPTIVE.len()))
 }
 
 /// Tells whether any light of a model has a size.
@@ -88,32 +92,32 @@ struct Compared<'s> {
     study: &'s Study,
     plans: Vec<Plan<'s>>,
     right: usize,
-    tests: f64,
     pixels: Pixels,
 }
 
 impl<'s> Compared<'s> {
     fn new(study: &'s Study, plans: Vec<Plan<'s>>, right: usize) -> Self {
         let model = &study.candidates[study.default].model;
-        let tests = tests(&Plan::new(model), &study.threads);
-        let pixels = spread(model.camera.value.pixels, (METHOD_TESTS as f64 / tests) as usize);
-        Self { study, plans, right, tests, pixels }
+        let pixels = (study.effort * METHOD_TESTS as f64 / study.tests) as usize;
+        let pixels = spread(model.camera.value.pixels, pixels.max(FEWEST));
+        Self { study, plans, right, pixels }
     }
 
     fn differences(&self, progress: &mut dyn Progress) -> ControlFlow<(), Vec<Difference>> {
         let mut colours = Vec::new();
         for plan in &self.plans {
             colours.push(traced::apart(&self.study.threads, plan, &self.pixels).0);
-            progress.done(METHOD_TESTS / 10)?;
+            progress.done(self.study.part(METHOD_TESTS) / 10)?;
         }
         let (right, display) = (&colours[self.right], self.plans[self.right].camera.display());
         ControlFlow::Continue(colours.iter().map(|colours| difference(&display, colours, right)).collect())
     }
 
     fn times(&self, progress: &mut dyn Progress) -> ControlFlow<(), Vec<Times>> {
-        let timed = timed(self.plans[self.right].camera.pixels, self.tests);
+        let timed = timed(self.study, self.plans[self.right].camera.pixels);
+        let (study, count_of) = (self.study, (self.plans.len(), count(&timed)));
         let work = |choice: usize| traced::tiles(&self.plans[choice], &timed);
-        self.study.thread.run(|| clock::rounds(self.plans.len(), count(&timed), work, progress))
+        study.thread.run(|| clock::rounds(count_of, study.effort, work, progress))
     }
 
     /// Says how many pixels were compared.
@@ -184,10 +188,10 @@ pub fn samples(
     let model = &candidates[*default].model;
     let own = &model.camera.value;
     let mut plan = Plan::new(model);
-    let tests = tests(&plan, threads);
-    let max_pixels = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    let mut pixels = spread(own.pixels, max_pixels.clamp(1024, 8192));
-    let right = truth(&plan, threads, &pixels, seen, progress)?;
+    let max_pixels = (study.effort * TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * study.tests)) as usize;
+    let least = study.part(LEAST).max(FEWEST);
+    let mut pixels = spread(own.pixels, max_pixels.clamp(least, 8 * least));
+    let right = truth(study, &plan, &pixels, seen, progress)?;
     pixels.truncate(right.len());
     let mut choices: Vec<_> = choices(own.samples, own.sampler);
     if seen == SampledEffect::Picture {
@@ -204,15 +208,15 @@ pub fn samples(
             SampledEffect::Shadows => each(threads, &pixels, |x, y| shadowed(&plan, [x, y])),
         };
         differences.push(difference(&plan.camera.display(), &colours, &right));
-        progress.done(TRUE_TESTS / 40 / choices.len())?;
+        progress.done(study.part(TRUE_TESTS) / 40 / choices.len())?;
     }
-    let timed = timed(own.pixels, tests);
+    let timed = timed(study, own.pixels);
     let times = thread.run(|| {
         let work = |choice: usize| {
             choices[choice].set(&mut plan);
             traced::tiles(&plan, &timed);
         };
-        clock::rounds(choices.len(), count(&timed), work, progress)
+        clock::rounds((choices.len(), count(&timed)), study.effort, work, progress)
     });
     if differences.iter().all(|off| off.rmse == 0.0) {
         return ControlFlow::Continue(None);
@@ -283,9 +287,10 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<Samples> {
     choices
 }
 
-/// Returns the tiles to time in an image with `tests` object tests per pixel.
-fn timed(size: [usize; 2], tests: f64) -> Vec<Pixels> {
-    tiles(size, ((TIMED_TESTS as f64 / tests) as usize).div_ceil(PACKET_SIZE).max(TIMED_TILES))
+/// Returns the tiles to time in an image of this size.
+fn timed(study: &Study, size: [usize; 2]) -> Vec<Pixels> {
+    let count = ((TIMED_TESTS as f64 / study.tests) as usize).div_ceil(PACKET_SIZE).max(TIMED_TILES);
+    tiles(size, study.part(count).max(FEWEST_TILES))
 }
 
 /// Returns the number of pixels of the tiles.
@@ -296,8 +301,8 @@ fn count(tiles: &[Pixels]) -> usize {
 /// Returns the true colours: with so many samples that more make no difference, and other ones than those that are
 /// compared. Where time does not suffice, they are those of the first pixels only, which are spread as evenly.
 fn truth(
+    study: &Study,
     plan: &Plan,
-    threads: &Renderer,
     pixels: &Pixels,
     seen: SampledEffect,
     progress: &mut dyn Progress,
@@ -311,8 +316,8 @@ fn truth(
         (0..TRUE_SAMPLES).map(one).sum::<Rgb>() / f64::from(TRUE_SAMPLES)
     };
     for part in pixels.chunks(pixels.len().div_ceil(100)) {
-        colours.extend(each(threads, part, colour));
-        progress.done(TRUE_TESTS / 10 * part.len() / pixels.len())?;
+        colours.extend(each(&study.threads, part, colour));
+        progress.done(study.part(TRUE_TESTS) / 10 * part.len() / pixels.len())?;
         if progress.is_late() && colours.len() >= FEWEST {
             break;
         }
@@ -353,7 +358,7 @@ fn each<T: Send>(
 }
 
 /// Returns the mean number of object tests for one ray through a pixel and all rays that follow from it.
-fn tests(plan: &Plan, threads: &Renderer) -> f64 {
+pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     struct Tests(usize);
     impl TraceObserver for Tests {
         const SEES: bool = true;
@@ -366,14 +371,13 @@ fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     }
     const PIXELS: usize = 400;
     let pixels = spread(plan.camera.pixels, PIXELS);
-    let samples = plan.camera.samples as usize;
-    let count = |x, y| {
+    let count = |x: usize, y: usize| {
         let mut tests = Tests(0);
-        trace::observe_pixel(plan, x, y, &mut tests);
+        trace::observe_colour(plan, &plan.camera.sight(x as f64, y as f64), None, &mut tests);
         tests.0
     };
     let all: usize = each(threads, &pixels, count).into_iter().sum();
-    (all as f64 / (pixels.len() * samples) as f64).max(1.0)
+    (all as f64 / pixels.len() as f64).max(1.0)
 }
 
 fn family(sampler: Sampler) -> Family {

@@ -32,6 +32,18 @@ impl Colours<'_> {
         }
     }
 
+    /// Computes the right colours, with this many samples in each of the two images, and the mean square errors of pixels
+    /// of fewer samples.
+    pub fn right_and_errors(
+        &mut self,
+        plan: &mut Plan,
+        samples: u32,
+        fewer: &[u32],
+    ) -> io::Result<Vec<(Right, Vec<f64>)>> {
+        let found = right::pairs_and_errors(self.threads, plan, self.pixels, (samples, SCRAMBLES), fewer);
+        self.counted(2 * samples, found)
+    }
+
     /// Computes the right colours, with this many samples in each of the two images.
     pub fn right(&mut self, plan: &mut Plan, samples: u32) -> io::Result<Vec<Right>> {
         let colours = right::pairs(self.threads, plan, self.pixels, (samples, SCRAMBLES));

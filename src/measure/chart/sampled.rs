@@ -76,6 +76,17 @@ impl Errors {
         }
     }
 
+    /// Tells how large the errors of the last pixels are to be expected, of each for all choices: their mean squares over
+    /// images of other samples. Those of a single sample, at the centre of its pixel, are what they are.
+    pub fn expect(&mut self, samples: &[u32], pixels: &[Vec<f64>]) {
+        for (index, (errors, samples)) in self.choices.iter_mut().zip(samples).enumerate() {
+            let last = errors.len() - pixels.len();
+            for (error, pixel) in errors[last..].iter_mut().zip(pixels).filter(|_| *samples > 1) {
+                error.expected = pixel[index];
+            }
+        }
+    }
+
     /// Returns the error of a choice and an upper bound for the image: the root of the mean square, or with `worst`
     /// the 99.9th percentile. The pixels have been drawn at random from those of the image that are not small ones.
     /// The conclusion about the others is wrong with a probability of at most `doubt`.

@@ -60,7 +60,8 @@ fn advice(chart: &Chart) -> Vec<String> {
         .then(|| "measure the times again on a machine with nothing else to do: see below".to_owned());
     let accuracy = of(Subject::Methods).and_then(|panel| accuracy(chart, panel));
     let unchecked = chart.unchecked.iter().map(ToString::to_string);
-    let samples = of(Subject::Samples).map(sampling);
+    // Pixels that are right by hits that may be wrong are no reason.
+    let samples = of(Subject::Samples).filter(|_| chart.unchecked.is_empty()).map(sampling);
     accuracy.into_iter().chain(unchecked).chain(samples).chain(again).collect()
 }
 
@@ -382,7 +383,11 @@ mod tests {
     #[test]
     fn hits_that_are_not_checked_are_not_praised() {
         let unchecked = vec![Unchecked { of: "ring", hits: 9, differ: 2, most: 0.5 }];
-        let text = words(&Chart { unchecked, ..chart(2.0) });
+        let mut chart = Chart { unchecked, ..chart(2.0) };
+        let right =
+            Point { visible: Some(0.0), samples: 4, ..point("sobol 4", Family::Sobol, (4.0, 1e-3), 0, 0) };
+        chart.panels.push(panel("samples", Subject::Samples, vec![right]));
+        let text = words(&chart);
         let advice = "What to do:\n  not checked: `ring` has no equation; 2 of 9 hits differ from those of rays that start nearer or \
                       come back, by up to 0.5 world units\n\n";
         assert!(text.starts_with(advice), "{text}");

@@ -1,7 +1,7 @@
 //! `tabray chart`: the cost and the error of each choice in a scene.
 
 use crate::chart::{self, Chart};
-use crate::measuring::{Time, Work, wait};
+use crate::measuring::{Limit, Work, wait};
 use std::io::{self, Write};
 use std::panic;
 use std::path::{Path, PathBuf};
@@ -55,7 +55,7 @@ inventory::submit! {
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let limit = time_limit::keep().unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
+    let limit = Limit::new(time_limit::keep(), LIMIT);
     let (mut work, start) = (Work::within(limit), Instant::now());
     let source = args.scene.read()?;
     let model = input::print_warnings(source.load(registry, None))?.model;
@@ -71,7 +71,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let (kept, units) = (work.panels(), work.units());
     let end = |chart: Chart| {
         interrupt::set_action(InterruptAction::SetFlag);
-        end(&chart, files, start.elapsed() >= limit)
+        end(&chart, files)
     };
     thread::scope(|scope| {
         let (sender, measured) = mpsc::channel();
@@ -82,7 +82,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             let _ = sender.send(chart);
         });
         // A measurement that takes far too long is not waited for.
-        match wait(&measured, &units, Time::last(limit).saturating_sub(start.elapsed())) {
+        match wait(&measured, &units, limit.last().saturating_sub(start.elapsed())) {
             Ok(chart) => end(chart?),
             Err(RecvTimeoutError::Timeout) => {
                 progress::clear();
@@ -127,12 +127,12 @@ fn files(output: &Path, name: &str, may_be: impl Fn(&Path) -> Result<(), Failure
 }
 
 /// Writes a chart and prints its verdict.
-fn end(chart: &Chart, files: Files, is_late: bool) -> Result<(), Failure> {
+fn end(chart: &Chart, files: Files) -> Result<(), Failure> {
     if chart.panels.is_empty() {
-        return Err(if is_late {
-            Failure::Failed("the time limit has been reached, and nothing is measured yet".to_owned())
-        } else {
+        return Err(if interrupt::check().is_break() {
             Failure::Interrupted(NOTHING)
+        } else {
+            Failure::Failed("the time limit has been reached, and nothing is measured yet".to_owned())
         });
     }
     let words = chart::words(chart);

@@ -2,7 +2,7 @@
 
 use super::chart::all_accuracies;
 use crate::chart::{self, Cost, Estimate, Estimates, Goal, Small};
-use crate::measuring::{Work, wait};
+use crate::measuring::{Limit, Work, wait};
 use clap::ArgGroup;
 use std::cmp::Ordering;
 use std::fmt::Write;
@@ -33,7 +33,7 @@ use tabray_tools::unchecked::{self, Unchecked};
 /// command line to use. The error of the whole image is at most what is printed, with a confidence of 95 %; with
 /// --certain, by a bound that holds whatever the other pixels are, with one of 99 %. The comparison of the choices takes
 /// 2 to 8 million rays for each of up to four ranges of samples, and the search for lamps, wires and glints that samples
-/// may miss up to 4 million. Gives up after 30 seconds or after --time-limit, and may take a tenth longer.
+/// may miss up to 4 million. Gives up after 30 seconds of an idle machine or after --time-limit, and may take a tenth longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 #[command(after_long_help = EXAMPLES)]
@@ -78,11 +78,11 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 inventory::submit! {
-    Command::new("choose", Group::Measuring, &Run(run)).placed(0, 16).keeps_time()
+    Command::new("choose", Group::First, &Run(run)).placed(6, 16).keeps_time()
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let limit = time_limit::keep().unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
+    let limit = Limit::new(time_limit::keep(), LIMIT);
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();
     let source = args.scene.read()?;
@@ -103,7 +103,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         None => (Goal::Time { most: time, worst }, format!("{time} s")),
     };
     let too_long = || {
-        let limit = humantime::format_duration(limit);
+        let limit = humantime::format_duration(limit.time);
         Failure::Failed(format!("choosing takes longer than {limit}; `--time-limit` gives it more"))
     };
     thread::scope(|scope| {
@@ -115,7 +115,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             let _ = sender.send(estimates);
         });
         // A pixel that takes far too long is not waited for.
-        let last = limit.saturating_add(limit / 10).saturating_sub(start.elapsed());
+        let last = limit.last().saturating_sub(start.elapsed());
         let estimates = match wait(&measured, &units, last) {
             Ok(estimates) => estimates.map_err(|error| match error.kind() {
                 io::ErrorKind::Interrupted => too_long(),

@@ -15,7 +15,7 @@ use tabray_cli::process::failure::report;
 use tabray_core::text;
 use tabray_lang::registry::Registry;
 use tabray_measure::chart::{self, Chart, Panel, Progress};
-use tabray_measure::measuring::Time;
+use tabray_measure::measuring::{Limit, Time};
 
 /// The longest time that a page may give a chart, in seconds.
 pub const MAX_SECONDS: u64 = 3600;
@@ -87,6 +87,7 @@ pub fn measure(
     limit: Duration,
     check: impl Fn() -> ControlFlow<()>,
 ) -> io::Result<Vec<u8>> {
+    let limit = Limit::new(Some(limit), limit);
     let refuse = |reason: &str| io::Error::new(io::ErrorKind::InvalidData, reason);
     if frame.charting.is_busy.swap(true, Ordering::Relaxed) {
         return Err(refuse("the chart of this scene is being measured already"));
@@ -112,7 +113,7 @@ pub fn measure(
         drop(measurement);
         let _ = sender.send(chart);
     })?;
-    let (start, last) = (Instant::now(), Time::last(limit));
+    let (start, last) = (Instant::now(), limit.last());
     let chart = loop {
         match measured.recv_timeout(LOOK) {
             Ok(Ok(chart)) => break chart?,

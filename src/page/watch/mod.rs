@@ -81,7 +81,7 @@ enum Event {
 }
 
 inventory::submit! {
-    Command::new("watch", Group::Rendering, &Run(run)).placed(1, 20)
+    Command::new("watch", Group::First, &Run(run)).placed(4, 20)
 }
 
 fn run(registry: &'static Registry, args: Args) -> Result<(), Failure> {

@@ -28,43 +28,51 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (len, ends) = (group.len, Ends::of(&self.plan.camera));
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
         // A budget that differs from the usual one was set for this ray.
-        let most = |own: &u32| match *own == MAX_RAYS as u32 {
+        let most = |own: u32| match own == MAX_RAYS as u32 {
             true => ends.budget,
-            false => Budget { rays: *own, work: *own },
+            false => Budget { rays: own, work: own },
         };
-        let budgets: Vec<Budget> = group.ray_budget[..len].iter().map(most).collect();
+        let mut budgets = take(&mut scratch.budgets);
+        budgets.clear();
+        budgets.extend(group.ray_budget[..len].iter().copied().map(most));
         group.ray_budget.fill(MAX_RAYS as u32);
         group.places.clear();
         group.places.extend(0..len as u32);
-        scratch.wave.clear();
-        scratch.wave.extend((0..len).map(OpenRay::primary));
-        scratch.begin_wave();
-        scratch.outcomes.iter_mut().for_each(|outcome| outcome.cost = MAX_RAYS as u32);
+        scratch.begin_primary(len);
         self.scratch.trees = Some(scratch);
         self.scratch.path_hashes.is_mixed = true;
         self.trace(group, colours);
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
-        scratch.note(group, colours);
-        let first = take(&mut scratch.outcomes);
-        for start in (0..len).step_by(TOGETHER) {
-            let block = start..len.min(start + TOGETHER);
-            scratch.trees.resize_with(scratch.trees.len().max(block.len()), Tree::default);
-            for (tree, lane) in scratch.trees.iter_mut().zip(block.clone()) {
+        scratch.swap_primary();
+        // Where no ray continues, the colour is known.
+        let goes_on = |lane: &u8| scratch.primary.1[usize::from(*lane)].onward.iter().any(Option::is_some);
+        let mut lanes = take(&mut scratch.lanes);
+        lanes.clear();
+        lanes.extend((0..len).map(|lane| lane as u8).filter(goes_on));
+        for lanes in lanes.chunks(TOGETHER) {
+            let TreeScratch { trees, numbers, primary, wave, .. } = &mut *scratch;
+            trees.resize_with(trees.len().max(lanes.len()), Tree::default);
+            numbers.resize(len.max(numbers.len()), 0);
+            wave.clear();
+            for ((tree, lane), number) in trees.iter_mut().zip(lanes).zip(0..) {
+                let lane = usize::from(*lane);
+                numbers[lane] = number;
+                let outcome = &mut primary.1[lane];
+                outcome.light = colours.get(lane);
+                outcome.cost = MAX_RAYS as u32 - group.ray_budget[lane];
                 tree.begin(budgets[lane]);
+                tree.add(outcome, depth, &ends);
+                tree.next(&ends, depth, wave);
             }
-            scratch.wave.clear();
-            scratch.wave.extend(block.clone().map(OpenRay::primary));
-            scratch.outcomes.clear();
-            scratch.outcomes.extend_from_slice(&first[block.clone()]);
             while !scratch.wave.is_empty() {
-                scratch.add(start, depth, &ends);
+                scratch = self.follow(scratch);
+                scratch.add(depth, &ends);
                 let TreeScratch { trees, wave, .. } = &mut *scratch;
                 wave.clear();
-                trees[..block.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, wave));
-                scratch = self.follow(scratch, start);
+                trees[..lanes.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, wave));
             }
-            for (tree, lane) in scratch.trees.iter().zip(block) {
-                let End { colour, apart } = tree.end(&ends);
+            for (tree, lane) in scratch.trees.iter().zip(lanes) {
+                let (End { colour, apart }, lane) = (tree.end(&ends), usize::from(*lane));
                 colours.set(lane, colour);
                 if W::SEES
                     && let Some(reason) = tree.drops()
@@ -76,11 +84,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
             }
         }
+        (scratch.lanes, scratch.budgets) = (lanes, budgets);
         self.scratch.trees = Some(scratch);
     }
 
-    /// Follows the rays of a wave. `first` is the lane of the first tree.
-    fn follow(&mut self, mut scratch: Box<TreeScratch>, first: usize) -> Box<TreeScratch> {
+    /// Follows the rays of a wave.
+    fn follow(&mut self, mut scratch: Box<TreeScratch>) -> Box<TreeScratch> {
         scratch.begin_wave();
         let (mut group, mut seen) = (take(&mut scratch.group), take(&mut scratch.seen));
         let mut order = take(&mut scratch.order);
@@ -104,7 +113,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let places = &order[start..start + same.count()];
             start += places.len();
             self.scratch.path_hashes.is_on = is_heavy;
-            scratch.gather(places, first, &mut group);
+            scratch.gather(places, &mut group);
             let count = group.padded();
             let shape = &self.model.objects[object as usize].shape;
             group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);

@@ -90,10 +90,10 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
         return proof.middle(&plan.camera.display());
     }
     let (camera, count) = (&plan.camera, samples(plan, x, y).0);
-    let (mut sum, mut budget) = (Rgb::ZERO, None);
+    let (mut sum, mut budget, mut rays) = (Rgb::ZERO, None, SingleRays::default());
     for (place, sample) in camera.places(x, y, count) {
         let sight = camera.sight_of(place, sample.as_ref());
-        let (colour, missing) = observed(plan, &sight, sample, budget, observer);
+        let (colour, missing) = rays.observed(plan, &sight, (sample, budget), observer);
         sum += colour;
         if missing == f64::INFINITY && sampled::is_unbounded(plan) {
             budget = Some(sampled::REST);
@@ -155,43 +155,68 @@ pub fn observe_colour<W: TraceObserver>(
     sample: Option<Sample>,
     observer: &mut W,
 ) -> Rgb {
-    observed(plan, sight, sample, None, observer).0
+    SingleRays::default().observed(plan, sight, (sample, None), observer).0
 }
 
-/// Computes a colour, with the usual ray budget or this one, and a bound on the light that it lacks.
-fn observed<W: TraceObserver>(
+/// Computes the colours that primary rays without samples return as [`colour`] does, one after the other, and reports
+/// each step to `observer`.
+pub fn observe_colours<W: TraceObserver>(
     plan: &Plan,
-    sight: &Sight,
-    sample: Option<Sample>,
-    budget: Option<u32>,
+    sights: impl Iterator<Item = Sight>,
     observer: &mut W,
-) -> (Rgb, f64) {
-    if W::SEES {
-        traced(plan, sight, sample, budget, &mut DynObserver::<true>(observer))
-    } else {
-        traced(plan, sight, sample, budget, &mut DynObserver::<false>(observer))
-    }
+) -> Vec<Rgb> {
+    let mut rays = SingleRays::default();
+    sights.map(|sight| rays.observed(plan, &sight, (None, None), observer).0).collect()
 }
 
-fn traced(
-    plan: &Plan,
-    sight: &Sight,
-    sample: Option<Sample>,
-    budget: Option<u32>,
-    observer: &mut impl TraceObserver,
-) -> (Rgb, f64) {
-    let (mut scratch, mut colours) = (Scratch::default(), VectorList::default());
-    if let Some(sample) = sample {
-        scratch.samples.begin(sample.sampler);
-        scratch.samples.push(sample);
+/// The scratch space of primary rays that are traced one by one.
+#[derive(Default)]
+struct SingleRays {
+    scratch: Scratch,
+    group: RayGroup,
+    colours: VectorList,
+}
+
+impl SingleRays {
+    /// Computes a colour, with the sample of its ray and with the usual ray budget or this one, and a bound on the
+    /// light that it lacks.
+    fn observed<W: TraceObserver>(
+        &mut self,
+        plan: &Plan,
+        sight: &Sight,
+        ray: (Option<Sample>, Option<u32>),
+        observer: &mut W,
+    ) -> (Rgb, f64) {
+        if W::SEES {
+            self.traced(plan, sight, ray, &mut DynObserver::<true>(observer))
+        } else {
+            self.traced(plan, sight, ray, &mut DynObserver::<false>(observer))
+        }
     }
-    let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
-    let mut group = RayGroup::primary(sight, plan.depth.as_ref());
-    if let Some(budget) = budget {
-        group.ray_budget.fill(budget);
+
+    fn traced(
+        &mut self,
+        plan: &Plan,
+        sight: &Sight,
+        (sample, budget): (Option<Sample>, Option<u32>),
+        observer: &mut impl TraceObserver,
+    ) -> (Rgb, f64) {
+        let Self { scratch, group, colours } = self;
+        match sample {
+            Some(sample) => {
+                scratch.samples.begin(sample.sampler);
+                scratch.samples.push(sample);
+            }
+            None => scratch.samples = Samples::default(),
+        }
+        let mut tracer = Tracer::new(plan, Cpu::best(), scratch, observer);
+        group.become_sights(slice::from_ref(sight), plan.depth.as_ref());
+        if let Some(budget) = budget {
+            group.ray_budget.fill(budget);
+        }
+        tracer.colours(group, colours);
+        (colours.get(0), tracer.missing(0))
     }
-    tracer.colours(&mut group, &mut colours);
-    (colours.get(0), tracer.missing(0))
 }
 
 /// Finds the first hit of a primary ray.

@@ -9,7 +9,6 @@ use crate::plan::depth::{Branch, Depth};
 use glam::DVec3;
 use std::mem::swap;
 use std::ops::Range;
-use std::slice;
 use tabray_world::geometry::ray::{MISS, Ray, Side};
 use tabray_world::geometry::ray_packet::{HitRecordMut, PACKET_SIZE, RayPacket};
 use tabray_world::geometry::sight::Sight;
@@ -64,13 +63,6 @@ pub(super) struct RayGroup {
 }
 
 impl RayGroup {
-    /// Makes a group of one primary ray.
-    pub fn primary(sight: &Sight, depth: Option<&Depth>) -> Self {
-        let mut group = Self::default();
-        group.become_sights(slice::from_ref(sight), depth);
-        group
-    }
-
     /// Becomes these rays, at least one.
     pub fn become_sights(&mut self, sights: &[Sight], depth: Option<&Depth>) {
         self.begin(sights[0].ray().origin, sights.len(), true, depth);

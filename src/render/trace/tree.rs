@@ -18,6 +18,7 @@
 //! change.
 
 use super::scatter::CountedLight;
+use super::wave::Outcome;
 use crate::limits::{MAX_RAYS, MAX_TREE, MIN_PART};
 use crate::observer::{DropReason, RayKind};
 use crate::plan::depth::{Depth, LightRange};
@@ -141,7 +142,7 @@ impl Eq for OpenRay {}
 #[derive(Default)]
 pub(super) struct Tree {
     /// The sum of the light found so far.
-    pub found: Rgb,
+    found: Rgb,
     open: BinaryHeap<OpenRay>,
     /// The range of light that bounded open rays, and rays too faint to be kept, can add.
     left: LightRange,
@@ -226,8 +227,15 @@ impl Tree {
         *self = Self { budget, open: take(&mut self.open), ..Self::default() };
     }
 
+    /// Adds what was found at the hit of one of its rays.
+    pub fn add(&mut self, Outcome { light, cost, onward }: &Outcome, depth: &Depth, ends: &Ends) {
+        self.found += *light;
+        self.work += cost;
+        onward.iter().flatten().for_each(|ray| self.push(*ray, depth, ends));
+    }
+
     /// Adds an open ray. One that is too faint is not followed.
-    pub fn push(&mut self, mut ray: OpenRay, depth: &Depth, ends: &Ends) {
+    fn push(&mut self, mut ray: OpenRay, depth: &Depth, ends: &Ends) {
         let LightRange { low, high } = ray.range(depth);
         ray.width = (high - low).max_element();
         if !ray.width.is_finite() {

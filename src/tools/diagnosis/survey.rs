@@ -4,6 +4,7 @@ use glam::DVec3;
 use tabray_core::render::observer::{Event, LightOutcome, RayPurpose, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
+use tabray_core::world::material::Rgb;
 use tabray_core::world::rules::Rules;
 
 /// The maximum number of object tests of a survey, which tests each object for each ray.
@@ -76,11 +77,9 @@ impl<'p> Survey<'p> {
         };
         let tests = plan.model.objects.len() * (1 + plan.model.lights.len());
         let step = (places.len() * tests).div_ceil(MAX_TESTS).max(1);
-        for [x, y] in places.iter().step_by(step) {
-            let sight = plan.camera.sight(*x as f64, *y as f64);
-            let colour = trace::observe_colour(plan, &sight, None, &mut survey);
-            survey.seen.push(colour.max_element());
-        }
+        let sights = places.iter().step_by(step).map(|[x, y]| plan.camera.sight(*x as f64, *y as f64));
+        let colours = trace::observe_colours(plan, sights, &mut survey);
+        survey.seen = colours.into_iter().map(Rgb::max_element).collect();
         survey
     }
 

@@ -16,6 +16,9 @@ pub struct PixelError {
     /// The mean square of the channels' errors, estimated by the two right colours: its expectation is the true one,
     /// since their errors are independent. It may be below 0.
     pub square: f64,
+    /// What `square` is on average over images of other samples, as far as that is known better: where a few pixels of an
+    /// image meet a highlight, others would in another image.
+    pub expected: f64,
     /// An estimate of the mean square that is larger than `square` where a channel is white: clamping to white darkens
     /// the mean of samples, in all images alike.
     pub careful: f64,
@@ -38,6 +41,7 @@ impl PixelError {
         let square = of_colours - spread;
         Self {
             square,
+            expected: square,
             careful: square + of_white,
             spread,
             noise: 4.0 * (of_colours + spread) * spread,
@@ -58,7 +62,14 @@ pub struct Measured {
 impl Drawn<'_> {
     /// Measures the root mean square error of the image's channels, by the errors of the pixels.
     pub fn rms(&self, errors: &[PixelError]) -> Measured {
-        let [mean, variance] = self.mean_of(errors.iter().map(|error| [error.square, error.noise]));
+        let mut counts = vec![0.0; self.strata.sizes.len()];
+        self.of[..errors.len()].iter().for_each(|stratum| counts[*stratum] += 1.0);
+        // Of a stratum that is measured as a whole, the errors of the image itself are known.
+        let is_whole = |stratum: &usize| counts[*stratum] >= self.strata.sizes[*stratum];
+        let of = |(error, stratum): (&PixelError, &usize)| {
+            [if is_whole(stratum) { error.square } else { error.expected }, error.noise]
+        };
+        let [mean, variance] = self.mean_of(errors.iter().zip(&self.of).map(of));
         let (mean, off) = (mean.max(0.0), DEVIATIONS * variance.sqrt());
         // Squares are often small and seldom large, and their mean is spread as the exponential of a normal number.
         let most = if off < mean { mean * libm::exp(off / mean) } else { mean + libm::exp(1.0) * off };
