@@ -10,6 +10,7 @@ static EMISSION: Pparm<Rgb> = Pparm::or(
     "the light that it gives in red, green and blue; it lights others where the camera has `bounces`",
     Rgb::ZERO,
 )
+.known_as(&["emissive", "emissivity"])
 .each(COLOUR)
 .not_dumped();
 static DIFFUSE: Pparm<Rgb> =

@@ -30,7 +30,7 @@ Examples:
   tabray check *.ray --message-format short";
 
 inventory::submit! {
-    Command::new("check", Group::Scenes, &Run(run)).placed(2, 7)
+    Command::new("check", Group::First, &Run(run)).placed(2, 7)
 }
 
 fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {

@@ -24,6 +24,8 @@ inventory::collect!(Command);
 /// The purpose under which the help lists a command, in the order of the help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
+    /// What everybody needs first.
+    First,
     /// Images and films.
     Rendering,
     /// Scenes as files.
@@ -40,12 +42,13 @@ pub enum Group {
 
 impl Group {
     /// Returns all groups, in the order of the help.
-    pub(crate) const ALL: [Self; 6] =
-        [Self::Rendering, Self::Scenes, Self::Inside, Self::Rays, Self::Measuring, Self::Tools];
+    pub(crate) const ALL: [Self; 7] =
+        [Self::First, Self::Rendering, Self::Scenes, Self::Inside, Self::Rays, Self::Measuring, Self::Tools];
 
     /// Returns the heading.
     pub(crate) fn heading(self) -> &'static str {
         match self {
+            Self::First => "First",
             Self::Rendering => "Rendering",
             Self::Scenes => "Scenes",
             Self::Inside => "Looking inside",

@@ -37,7 +37,7 @@ Examples:
   tabray list --json";
 
 inventory::submit! {
-    Command::new("list", Group::Scenes, &Run(run)).placed(1, 22)
+    Command::new("list", Group::First, &Run(run)).placed(1, 22)
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {

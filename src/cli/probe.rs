@@ -45,7 +45,7 @@ fn place(text: &str) -> Result<i64, String> {
 }
 
 inventory::submit! {
-    Command::new("probe", Group::Inside, &Run(run)).placed(1, 10)
+    Command::new("probe", Group::First, &Run(run)).placed(5, 10)
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {

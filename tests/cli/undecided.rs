@@ -28,7 +28,8 @@ fn a_render_counts_and_shows_the_pixels_that_it_could_not_decide() {
     for options in [&[][..], &["--samples", "4"], &["--max-error", "20"]] {
         let (err, counted, white) = stair(options);
         assert!(counted > 0 && counted == white as u64, "{options:?}: {counted} {white}");
-        let warning = format!("warning: {counted} pixels could not be decided: `column` jumps\n");
+        let warning =
+            format!("warning: {counted} pixels could not be decided: `column` is not continuous there\n");
         assert!(err.contains(&warning), "{options:?}: {err}");
     }
 }
@@ -36,7 +37,7 @@ fn a_render_counts_and_shows_the_pixels_that_it_could_not_decide() {
 #[test]
 fn the_operation_that_leaves_pixels_open_is_named() {
     for (formula, reason) in [
-        ("(x + 2)*heaviside(y - 0.3)", "`s` may jump, by `heaviside(y - 0.3)`"),
+        ("(x + 2)*heaviside(y - 0.3)", "`s` may not be continuous there, by `heaviside(y - 0.3)`"),
         ("sin(x*y)/(x*y) - 0.9", "`s` may be undefined, by `sin(x*y)/(x*y)`"),
         ("abs(x)*exp(y + 0.1*z)", "`s` is 0 without a change of sign"),
     ] {

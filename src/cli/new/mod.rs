@@ -30,7 +30,7 @@ enum Subcommand {
 }
 
 inventory::submit! {
-    Command::new("new", Group::Scenes, &Run(run)).placed(0, 23)
+    Command::new("new", Group::First, &Run(run)).placed(0, 23)
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {

@@ -18,6 +18,9 @@ use tabray_core::scene::store::Store;
 use tabray_core::scene::value::{Datum, Type};
 use tabray_core::text::{self, list};
 
+/// The maximum number of other materials that are named because they have an attribute.
+const MAX_OTHERS: usize = 4;
+
 /// Checks an entity against the table of its type, and reports its errors and warnings.
 pub struct AttributeChecker<'c, 't> {
     /// The types of entities.
@@ -177,7 +180,22 @@ impl AttributeChecker<'_, '_> {
             return;
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
-        self.report.add(fault.help(format!("{} takes {names}", text::with_article(entity.name))));
+        let takes = format!("{} takes {names}", text::with_article(entity.name));
+        // One material stands where another does.
+        let has = |other: &&Entity| {
+            near.is_none()
+                && entity.kind() == Kind::Material
+                && other.kind() == Kind::Material
+                && other.attributes().any(|attribute| attribute.name() == word.text)
+        };
+        let others = self.registry.iter().filter(has).map(|other| format!("`{}`", other.name));
+        let others: Vec<_> = others.take(MAX_OTHERS).collect();
+        let words: Vec<_> = others.iter().map(String::as_str).collect();
+        self.report.add(fault.help(match words[..] {
+            [] => takes,
+            [other] => format!("{other} has it; {takes}"),
+            _ => format!("{} have it; {takes}", text::and(&words)),
+        }));
     }
 
     /// Checks the values of one attribute: their type, their number and their rule.

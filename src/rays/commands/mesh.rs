@@ -122,7 +122,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Some("its normals may turn by a right angle there, as at a node or an edge"),
         ),
         Some(_) => {}
-        None => messages::note("how the surface is joined at its edges was not examined"),
+        None => messages::note("it was not checked whether the mesh is connected as the object is"),
     }
     if made.far.is_empty() {
         messages::note(&format!(

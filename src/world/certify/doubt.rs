@@ -36,8 +36,8 @@ impl fmt::Display for Doubt {
         match self {
             Self::Touched => f.write_str("is 0 without a change of sign"),
             Self::Undefined(operation) => write!(f, "may be undefined, by `{operation}`"),
-            Self::Jumps(None) => f.write_str("jumps"),
-            Self::Jumps(Some(operation)) => write!(f, "may jump, by `{operation}`"),
+            Self::Jumps(None) => f.write_str("is not continuous there"),
+            Self::Jumps(Some(operation)) => write!(f, "may not be continuous there, by `{operation}`"),
             Self::Steep => f.write_str("has no bounded slope"),
             Self::Singular => f.write_str("has a pole or a fold there, or meets itself"),
             Self::Long(None) => f.write_str("takes more than 237 bits, or more steps than are tried"),
