@@ -127,7 +127,7 @@ fn all_forms_of_rays_and_answers_say_the_same() {
     assert!(head.contains("('t_low', '<f8')") && head.contains("'shape': (2,)"), "{head}");
     assert_eq!(array[length], 1, "the first is a hit");
     let record = (array.len() - length) / 2;
-    assert_eq!((record, array[length + record]), (1 + 1 + 4 + 4 + 4 * 8 + 8 * 8, 0));
+    assert_eq!((record, array[length + record]), (1 + 1 + 4 + 4 + 4 * 8 + 8 * 8 + 4, 0));
 }
 
 #[test]

@@ -339,3 +339,70 @@ fn rays_through_vertices_and_edges_are_decided() {
         }
     }
 }
+
+/// A point is rounded to either side of its surface. Convex shapes tell what is right: a ray that leaves one outward hits
+/// nothing, and one that goes inward hits it again.
+#[test]
+fn rays_that_start_on_a_surface_do_not_hit_it_there() {
+    let mut random = Random(Pcg64::new(3, 7));
+    let folder = folder();
+    for scale in [1e-6, 1.0, 1e6] {
+        let middle = scale * DVec3::new(3.1, -2.3, 5.7);
+        let at = |DVec3 { x, y, z }: DVec3| format!("{x:e} {y:e} {z:e}");
+        let corners =
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [middle + scale * axis, middle - 0.7 * scale * axis]);
+        let mut mesh: String =
+            corners.iter().flatten().map(|corner| format!("v {}\n", at(*corner))).collect();
+        for (x, y, z) in (0..8).map(|side| (side & 1, side >> 1 & 1, side >> 2 & 1)) {
+            writeln!(mesh, "f {} {} {}", 1 + x, 3 + y, 5 + z).expect("text");
+        }
+        fs::write(folder.path().join("octahedron.obj"), mesh).expect("a file");
+        let middle = at(middle);
+        for shape in [
+            "mesh m { material m file \"octahedron.obj\" }".to_owned(),
+            format!("sphere m {{ material m center {middle} radius {scale:e} }}"),
+            format!("ellipsoid m {{ material m center {middle} radius {scale:e} scale 1 0.5 0.8 }}"),
+            format!("box m {{ material m center {middle} size {scale:e} {scale:e} {scale:e} }}"),
+            format!(
+                "cylinder m {{ material m base {middle} direction 1 2 3 height {scale:e} radius {scale:e} }}"
+            ),
+        ] {
+            let model = model_in(
+                folder.path(),
+                &format!(
+                    "look_at eye {{ pixeldim 4 3 position 0 0 9 target 0 0 0 angle 40 }} material m {{ }} {shape}"
+                ),
+            );
+            let query = Query::new(&model);
+            let from = |origin: DVec3, to: DVec3| QueryRay::new(origin, to - origin);
+            let centre = scale * DVec3::new(3.1, -2.3, 5.7);
+            let rays: Vec<_> = (0..400)
+                .filter_map(|_| {
+                    let origin = centre + 9.0 * scale * random.vector();
+                    from(origin, centre + 0.5 * scale * random.vector())
+                })
+                .collect();
+            let (mut onward, mut goes_out) = (Vec::new(), Vec::new());
+            for (ray, answer) in rays.iter().zip(query.proven(&rays, false)) {
+                let Some(at) = query.surroundings(ray, &answer).filter(|_| answer.verdict == Verdict::Hit)
+                else {
+                    continue;
+                };
+                let dir = random.vector();
+                let cosine = dir.normalize().dot(at.normal);
+                if cosine.abs() < 0.01 {
+                    continue;
+                }
+                let surface = query.surface(&answer).expect("the surface of a proven hit");
+                let start = query.start(0, surface).expect("a start");
+                onward.push(QueryRay::new(at.point, dir).expect("a ray").leaving(start));
+                goes_out.push(cosine > 0.0);
+            }
+            assert!(onward.len() > 150, "{} hits: {shape}", onward.len());
+            for ((ray, answer), goes_out) in onward.iter().zip(query.proven(&onward, false)).zip(goes_out) {
+                let right = if goes_out { Verdict::Miss } else { Verdict::Hit };
+                assert_eq!(answer.verdict, right, "{ray:?}: {shape}");
+            }
+        }
+    }
+}

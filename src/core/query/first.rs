@@ -60,12 +60,26 @@ pub fn first_of<'s>(
     objects: impl IntoIterator<Item = (usize, &'s AnyShape)>,
     sight: &Sight,
 ) -> (FirstHits, Precision) {
-    let objects: Vec<_> = objects.into_iter().collect();
-    match first_by(Precision::Double, objects.iter().copied(), sight) {
+    let shapes: Vec<_> = objects.into_iter().collect();
+    let certify = |place: usize, precision| shapes[place].1.certify_part(sight, precision);
+    first_among(&shapes.iter().map(|(object, _)| *object).collect::<Vec<_>>(), &certify)
+}
+
+/// Proves which of some objects a ray hits first, as [`first_of`] does. `certify` proves what the ray hits of the object
+/// at a place of the list.
+pub(super) fn first_among(
+    objects: &[usize],
+    certify: &dyn Fn(usize, Precision) -> (Enclosure, usize),
+) -> (FirstHits, Precision) {
+    let proven = |place: usize, precision| {
+        let (enclosure, part) = certify(place, precision);
+        Candidate { object: objects[place], part, enclosure }
+    };
+    match first(&(0..objects.len()).map(|place| proven(place, Precision::Double)).collect::<Vec<_>>()) {
         FirstHits::OneOf { any, .. } => {
-            let is_open = |(index, _): &(usize, &AnyShape)| any.iter().any(|open| open.object == *index);
-            let open = objects.into_iter().filter(is_open);
-            (first_by(Precision::Octuple, open, sight), Precision::Octuple)
+            let is_open = |place: &usize| any.iter().any(|open| open.object == objects[*place]);
+            let open = (0..objects.len()).filter(is_open).map(|place| proven(place, Precision::Octuple));
+            (first(&open.collect::<Vec<_>>()), Precision::Octuple)
         }
         certain => (certain, Precision::Double),
     }

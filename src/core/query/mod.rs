@@ -24,5 +24,5 @@ mod scene;
 
 pub use answer::{Answer, Surroundings, Verdict};
 pub use crossings::Crossing;
-pub use ray::QueryRay;
+pub use ray::{QueryRay, Start};
 pub use scene::{Query, is_contradicted};

@@ -12,6 +12,16 @@ pub struct QueryRay {
     sight: Sight,
     /// The t of this ray at t = 1 of the sight, a power of 2; `None` where t counts world units.
     scale: Option<f64>,
+    leaves: Option<Start>,
+}
+
+/// The surface on which a ray starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// The object, by its index.
+    pub object: usize,
+    /// The part of the object, as an [`Answer`](super::Answer) names it.
+    pub part: usize,
 }
 
 impl QueryRay {
@@ -27,12 +37,30 @@ impl QueryRay {
         let scaled = dir / scale;
         let is_exact = scaled * scale == dir;
         let (dir, scale) = if is_exact { (scaled, scale) } else { (dir, 1.0) };
-        Some(Self { sight: Sight::exactly(origin, dir), scale: Some(1.0 / scale) })
+        Some(Self { sight: Sight::exactly(origin, dir), scale: Some(1.0 / scale), leaves: None })
     }
 
     /// Returns a camera's ray, along which t is measured in world units.
     pub(super) fn of_camera(sight: Sight) -> Self {
-        Self { sight, scale: None }
+        Self { sight, scale: None, leaves: None }
+    }
+
+    /// Returns the ray as one that starts on a surface, at the point nearest to its origin, which is rounded. It does not
+    /// hit that surface there.
+    #[must_use]
+    pub fn leaving(self, start: Start) -> Self {
+        Self { leaves: Some(start), ..self }
+    }
+
+    /// Returns the surface on which the ray starts, if one is told.
+    pub fn leaves(&self) -> Option<Start> {
+        self.leaves
+    }
+
+    /// Returns a bound on the error of an origin that was computed as a point on a surface, in world units along each axis:
+    /// 4 units in the last place of the largest coordinate.
+    pub(super) fn origin_error(&self) -> f64 {
+        4.0 * f64::EPSILON * self.sight.ray().origin.abs().max_element()
     }
 
     /// Returns the sight along the ray.

@@ -1,16 +1,17 @@
 //! Queries about the hits of rays in a scene.
 
 use super::answer::{Answer, Surroundings, Verdict};
-use super::first::{Candidate, FirstHit, FirstHits, first_by, first_of, last_end};
-use super::ray::QueryRay;
+use super::first::{Candidate, FirstHit, FirstHits, first_among, first_by, last_end};
+use super::ray::{QueryRay, Start};
 use f256::f256;
+use std::ops::Range;
 use std::slice;
 use tabray_exact::interval::{Float, Interval, Wide};
 use tabray_render::observer::Hit;
 use tabray_render::plan::Plan;
 use tabray_render::trace;
 use tabray_world::any_shape::AnyShape;
-use tabray_world::certify::{Enclosure, Precision};
+use tabray_world::certify::{self, Enclosure, Precision};
 use tabray_world::geometry::aabb::{Aabb, SLACK};
 use tabray_world::geometry::sight::{Line, Sight};
 use tabray_world::hittable::SurfaceHit;
@@ -39,6 +40,27 @@ impl<'m> Query<'m> {
         self.numbers[object]
     }
 
+    /// Returns the number of the surface that an answer names, among all parts of its entity, for [`start`](Self::start);
+    /// `None` where no surface is known.
+    pub fn surface(&self, answer: &Answer) -> Option<usize> {
+        let object = answer.object?;
+        let objects = self.objects(self.number(object));
+        Some(answer.part? * objects.len() + object - objects.start)
+    }
+
+    /// Returns the surface of an entity, both by their numbers, on which rays may start; `None` if there is none.
+    pub fn start(&self, number: usize, surface: usize) -> Option<Start> {
+        let objects = self.objects(number);
+        let object = objects.start + surface.checked_rem(objects.len())?;
+        self.shape(object).proven().map(|_| Start { object, part: surface / objects.len() })
+    }
+
+    /// Returns the objects of the model that belong to an entity.
+    fn objects(&self, number: usize) -> Range<usize> {
+        let end = |is_before: &dyn Fn(&usize) -> bool| self.numbers.partition_point(is_before);
+        end(&|own| *own < number)..end(&|own| *own <= number)
+    }
+
     /// Returns the ray through the middle of a pixel of the scene's camera, by column and row from the lower left
     /// corner.
     pub fn camera_ray(&self, x: usize, y: usize) -> QueryRay {
@@ -50,6 +72,7 @@ impl<'m> Query<'m> {
         self.found(rays, true)
     }
 
+    /// Finds the first hits of rays that leave no surface, as the tracer does.
     fn found(&self, rays: &[QueryRay], decides: bool) -> Vec<Option<Hit<'m>>> {
         let sights: Vec<_> = rays.iter().map(|ray| ray.sight().clone()).collect();
         trace::first_hits(&self.plan, &sights, decides)
@@ -61,12 +84,23 @@ impl<'m> Query<'m> {
     /// A proof is about the real numbers of the scene and of the ray ([`certify`](tabray_world::certify)). In a scene
     /// with many objects, it leaves out those whose bounding boxes the ray certainly misses or meets later.
     pub fn first(&self, ray: &QueryRay, found: Option<&Hit>) -> (FirstHits, Precision) {
-        let shape = |index: usize| (index, self.shape(index));
         let end = match (&self.plan.tree, found) {
-            (Some(_), Some(hit)) => last_end([shape(hit.index)], ray.sight()),
+            (Some(_), Some(hit)) => last_end([(hit.index, self.shape(hit.index))], ray.sight()),
             _ => f256::INFINITY,
         };
-        first_of(self.near(ray, end).into_iter().map(shape), ray.sight())
+        let near = self.near(ray, end);
+        first_among(&near, &|place, precision| self.certify(ray, near[place], precision))
+    }
+
+    /// Returns what is proven about a ray's first hit of an object, and the part that is hit.
+    fn certify(&self, ray: &QueryRay, object: usize, precision: Precision) -> (Enclosure, usize) {
+        let shape = self.shape(object);
+        match (ray.leaves().filter(|start| start.object == object), shape.proven()) {
+            (Some(Start { part, .. }), Some(proven)) => {
+                certify::first_part_from(proven, ray.sight(), precision, (part, ray.origin_error()))
+            }
+            _ => shape.certify_part(ray.sight(), precision),
+        }
     }
 
     /// Returns the objects that a ray may meet at or before a distance in lengths of the sight's direction, in the
@@ -82,8 +116,11 @@ impl<'m> Query<'m> {
 }
 
 impl Query<'_> {
-    /// Returns the first hits of rays as the tracer finds them, without a proof.
+    /// Returns the first hits of rays as the tracer finds them, without a proof. Rays that leave surfaces are proven.
     pub fn traced(&self, rays: &[QueryRay]) -> Vec<Answer> {
+        if rays.iter().any(|ray| ray.leaves().is_some()) {
+            return self.proven(rays, false);
+        }
         let answer = |(ray, hit): (&QueryRay, Option<Hit>)| match hit {
             None => Answer::miss(None),
             Some(Hit { index, distance, .. }) => Answer {
@@ -107,12 +144,17 @@ impl Query<'_> {
             Some(_) => self.found(rays, false),
             None => rays.iter().map(|_| None).collect(),
         };
+        // It knows of no surface that a ray leaves.
+        let is_bare = |ray: &QueryRay| ray.leaves().is_none();
+        found.iter_mut().zip(rays).filter(|(_, ray)| !is_bare(ray)).for_each(|(hit, _)| *hit = None);
         let firsts: Vec<_> =
             rays.iter().zip(&found).map(|(ray, found)| self.first(ray, found.as_ref())).collect();
         if self.plan.tree.is_none() {
             // The tracer's distance is more accurate than the middle of bounds by 53 bits, and these alone take it.
             let is_double = |index: &usize| {
-                matches!(firsts[*index], (FirstHits::Certain(Some(_)), Precision::Double)) && !is_tight
+                matches!(firsts[*index], (FirstHits::Certain(Some(_)), Precision::Double))
+                    && !is_tight
+                    && is_bare(&rays[*index])
             };
             let places: Vec<_> = (0..rays.len()).filter(is_double).collect();
             let traced: Vec<_> = places.iter().map(|index| rays[*index].clone()).collect();
@@ -126,6 +168,12 @@ impl Query<'_> {
     pub fn occluded(&self, rays: &[QueryRay], ends: &[f64]) -> Vec<bool> {
         let answers = self.proven(rays, false).into_iter().zip(ends);
         answers.map(|(answer, end)| answer.any_within(*end).verdict != Verdict::Miss).collect()
+    }
+
+    /// Tells whether a ray that starts on no surface, as far as is told, hits one so soon that its origin may have been
+    /// computed as a point of it.
+    pub fn starts_on_surface(&self, ray: &QueryRay, answer: &Answer) -> bool {
+        ray.leaves().is_none() && answer.distance <= 4.0 * ray.origin_error()
     }
 
     fn proof(
@@ -143,8 +191,7 @@ impl Query<'_> {
                 };
                 if is_tight
                     && precision == Precision::Double
-                    && let (Enclosure::Hits(at), part) =
-                        self.shape(object).certify_part(ray.sight(), Precision::Octuple)
+                    && let (Enclosure::Hits(at), part) = self.certify(ray, object, Precision::Octuple)
                 {
                     return hit(part, at, Precision::Octuple);
                 }
@@ -173,7 +220,10 @@ impl Query<'_> {
             return Answer::at(ray, verdict, first, Wide { low, high: end }, precision);
         }
         // The tracer finds one of the objects in question.
-        let found = self.first_hits(slice::from_ref(ray)).pop().flatten();
+        let found = match ray.leaves() {
+            None => self.first_hits(slice::from_ref(ray)).pop().flatten(),
+            Some(_) => None,
+        };
         let (object, at) = (found.as_ref().map(|hit| hit.index), Wide { low, high: end });
         let open = Answer::at(ray, Verdict::Undecided, (object, None), at, precision);
         match found {

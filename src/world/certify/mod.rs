@@ -138,16 +138,46 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
 
 /// Returns what is proven about a ray's first hit of a shape, and the part that is hit.
 pub fn first_part(shape: &dyn ProofMethods, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-    fn found<F: Precise>(shape: &dyn ProofMethods, sight: &Sight) -> (Enclosure, usize)
+    part_of(shape, sight, precision, None)
+}
+
+/// Returns what is proven about a ray's first hit of a shape, and the part that is hit, for a ray that starts on a part of
+/// this shape: at a point of that part that is at most `error` world units along each axis from the origin of the sight.
+/// That start is no hit.
+pub fn first_part_from(
+    shape: &dyn ProofMethods,
+    sight: &Sight,
+    precision: Precision,
+    (part, error): (usize, f64),
+) -> (Enclosure, usize) {
+    part_of(shape, sight, precision, Some((part, error)))
+}
+
+fn part_of(
+    shape: &dyn ProofMethods,
+    sight: &Sight,
+    precision: Precision,
+    start: Option<(usize, f64)>,
+) -> (Enclosure, usize) {
+    fn found<F: Precise>(
+        shape: &dyn ProofMethods,
+        sight: &Sight,
+        start: Option<(usize, f64)>,
+    ) -> (Enclosure, usize)
     where
         Enclosure: From<HitEnclosure<F>>,
     {
-        let (found, part) = F::proofs(shape).first_hit(&sight.line(), None);
+        let mut line = sight.line::<Interval<F>>();
+        if let Some((_, error)) = start {
+            let off = Interval::<F>::point(F::of(error));
+            line.origin = line.origin.map(|at| Interval { low: (at - off).low, high: (at + off).high });
+        }
+        let (found, part) = F::proofs(shape).first_hit(&line, start.map(|(part, _)| part));
         (found.into(), part)
     }
     match precision {
-        Precision::Double => found::<f64>(shape, sight),
-        Precision::Octuple => found::<f256>(shape, sight),
+        Precision::Double => found::<f64>(shape, sight, start),
+        Precision::Octuple => found::<f256>(shape, sight, start),
     }
 }
 
