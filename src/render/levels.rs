@@ -14,7 +14,7 @@ pub struct Levels {
 }
 
 /// The number of pixels that are looked at together.
-const RUN: usize = 64;
+const RUN: usize = 16;
 
 /// The least byte that is not almost black.
 pub const DARK: u8 = 8;

@@ -115,7 +115,7 @@ fn a_room_that_no_lamp_lights_directly_is_told_of_bounces() {
     let folder = folder();
     let room = "material white { diffuse 0.8 0.8 0.8 }
         sphere room { material white center 0 0 0 radius 9 }
-        sphere screen { material white center 0 0 -4.5 radius 4 }
+        sphere screen { material white center 0 0 -5 radius 3.4 }
         light lamp { location 0 0 -8.7 emissivity 1 1 1 }";
     let scene = |rows: &str| format!("{EYE} {rows} }} {room}").replace("pixeldim 5 5", "pixeldim 64 48");
     let (_, said) = middle(&folder, &scene(""), &[]);
