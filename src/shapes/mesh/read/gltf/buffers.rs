@@ -1,6 +1,7 @@
 //! Numbers of glTF: buffers, buffer views, and accessors, which give the types of the numbers in a view.
 
 use super::json::{self, Gltf};
+use super::meshopt;
 use crate::mesh::read::model::{MemoryBudget, shown};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -14,6 +15,8 @@ use tabray_world::text;
 /// The bytes of a file's buffers.
 pub struct Buffers<'f> {
     buffers: Vec<Cow<'f, [u8]>>,
+    /// The views that are compressed in the file, by their indices.
+    decoded: BTreeMap<usize, Vec<u8>>,
     json: &'f Gltf,
 }
 
@@ -99,7 +102,11 @@ impl<'f> Buffers<'f> {
         budget: &MemoryBudget,
     ) -> Result<Self, String> {
         let (mut buffers, mut left) = (Vec::new(), budget.left());
-        for (index, json::Buffer { uri, byte_length }) in json.buffers.iter().enumerate() {
+        for (index, json::Buffer { uri, byte_length, extensions }) in json.buffers.iter().enumerate() {
+            if extensions.meshopt.fallback {
+                buffers.push(Cow::Borrowed(&[][..]));
+                continue;
+            }
             let bytes = match uri {
                 None if index == 0 => Cow::Borrowed(own.unwrap_or_default()),
                 None => return Err(format!("buffer {index} has no `uri`")),
@@ -114,19 +121,32 @@ impl<'f> Buffers<'f> {
             left = left.saturating_sub(if uri.is_some() { bytes.len() as u64 } else { 0 });
             buffers.push(bytes);
         }
-        Ok(Self { buffers, json })
+        let mut decoded = BTreeMap::new();
+        for (index, view) in json.buffer_views.iter().enumerate() {
+            let Some(view) = &view.extensions.meshopt else { continue };
+            let buffer =
+                buffers.get(view.buffer).ok_or_else(|| format!("there is no buffer {}", view.buffer))?;
+            let bytes = meshopt::decoded(view, buffer, left)?;
+            left -= bytes.len() as u64;
+            decoded.insert(index, bytes);
+        }
+        Ok(Self { buffers, decoded, json })
     }
 
     /// Returns the bytes of a view, from an offset on.
     pub fn view(&self, index: usize, offset: usize) -> Result<&[u8], String> {
         let view =
             self.json.buffer_views.get(index).ok_or_else(|| format!("there is no buffer view {index}"))?;
+        let beyond = || format!("buffer view {index} reaches beyond the end of buffer {}", view.buffer);
+        if let Some(bytes) = self.decoded.get(&index) {
+            return bytes.get(offset..).ok_or_else(beyond);
+        }
         let buffer =
             self.buffers.get(view.buffer).ok_or_else(|| format!("there is no buffer {}", view.buffer))?;
         let end = view.byte_offset.checked_add(view.byte_length);
         let bytes = end.and_then(|end| buffer.get(view.byte_offset..end));
         let bytes = bytes.and_then(|bytes| bytes.get(offset..));
-        bytes.ok_or_else(|| format!("buffer view {index} reaches beyond the end of buffer {}", view.buffer))
+        bytes.ok_or_else(beyond)
     }
 
     /// Returns the elements of an accessor. The number of components in each element must be one of `widths`.

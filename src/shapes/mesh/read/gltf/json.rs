@@ -198,6 +198,46 @@ pub struct BufferView {
     pub byte_offset: usize,
     pub byte_length: usize,
     pub byte_stride: Option<usize>,
+    pub extensions: ViewExtensions,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct ViewExtensions {
+    #[serde(rename = "EXT_meshopt_compression")]
+    pub meshopt: Option<Meshopt>,
+}
+
+/// A compressed buffer view.
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Meshopt {
+    pub buffer: usize,
+    pub byte_offset: usize,
+    pub byte_length: usize,
+    pub byte_stride: usize,
+    pub count: usize,
+    pub mode: CompressionMode,
+    pub filter: CompressionFilter,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum CompressionMode {
+    #[default]
+    Attributes,
+    Triangles,
+    Indices,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum CompressionFilter {
+    #[default]
+    None,
+    Octahedral,
+    Quaternion,
+    Exponential,
 }
 
 #[derive(Default, Deserialize)]
@@ -205,6 +245,21 @@ pub struct BufferView {
 pub struct Buffer {
     pub uri: Option<String>,
     pub byte_length: usize,
+    pub extensions: BufferExtensions,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct BufferExtensions {
+    #[serde(rename = "EXT_meshopt_compression")]
+    pub meshopt: Fallback,
+}
+
+/// Whether a buffer is for programs that do not read compressed views.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub struct Fallback {
+    pub fallback: bool,
 }
 
 #[derive(Default, Deserialize)]

@@ -5,6 +5,7 @@
 mod buffers;
 mod json;
 mod looks;
+mod meshopt;
 mod staging;
 
 use super::at_corners::{AtCorners, NO_VALUE};
@@ -22,8 +23,9 @@ use tabray_world::text;
 pub const MAGIC: &[u8] = b"glTF";
 
 /// The supported extensions among those that a file may require.
-const EXTENSIONS: [&str; 12] = [
+const EXTENSIONS: [&str; 13] = [
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
     "KHR_materials_pbrSpecularGlossiness",
     // The default materials are shown.
@@ -113,7 +115,6 @@ fn model(json: &Gltf, own: Option<&[u8]>, folder: &Path, budget: &MemoryBudget) 
     if let Some(name) = unread {
         let cure = match &name[..] {
             "KHR_draco_mesh_compression" => "decompress it first, as `gltf-transform cp a.glb b.glb` does",
-            "EXT_meshopt_compression" => "decompress it first, as `gltf-transform cp a.glb b.glb` does",
             "KHR_texture_basisu" => "save its images as PNG",
             _ => "export it without, or as OBJ",
         };

@@ -140,7 +140,7 @@ fn files_that_are_no_gltf_or_broken_are_told() {
         (
             r#"{"version":"2.0"}"#,
             r#"{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]"#,
-            "it requires the extension `KHR_draco_mesh_compression`, which is not read: export it without, or as OBJ",
+            "it requires the extension `KHR_draco_mesh_compression`, which is not read: decompress it first, as `gltf-transform cp a.glb b.glb` does",
         ),
     ] {
         assert!(sound.contains(from), "{from}");
