@@ -38,10 +38,10 @@ pub fn cure(attribute: &dyn Attribute, words: &[Word<'_>], syntax: Syntax) -> Op
     };
     let takes = |count: usize| attribute.arity().allow(count);
     let lower = text.to_lowercase();
-    if takes(3) {
-        if let Some(colour) = colour(text) {
-            return Some(format!("a colour is its red, green and blue: {}", write(&colour)));
-        }
+    if takes(3)
+        && let Some(colour) = colour(text)
+    {
+        return Some(format!("a colour is its red, green and blue: {}", write(&colour)));
     }
     if let ("yes" | "true" | "on" | "no" | "false" | "off", true) = (&*lower, takes(1)) {
         let number = f64::from(u8::from(matches!(&*lower, "yes" | "true" | "on")));

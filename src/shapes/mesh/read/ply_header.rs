@@ -363,7 +363,7 @@ impl Section {
         if self.fields.iter().any(|field| matches!(field, Field::Uv(..))) {
             let (pairs, first) = (uv.as_chunks::<2>().0, at.values.len() as u32);
             let is_whole = pairs.len() == count;
-            at.values.extend(is_whole.then_some(pairs).unwrap_or_default());
+            at.values.extend(if is_whole { pairs } else { &[] });
             let index = |corner: usize| if is_whole { first + corner as u32 } else { NO_VALUE };
             add(&mut at.faces, &(0..count).map(index).collect::<Vec<_>>());
         }

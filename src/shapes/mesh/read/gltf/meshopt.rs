@@ -98,7 +98,7 @@ fn attributes(bytes: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     let mut last = bytes[bytes.len() - stride..].to_vec();
     let mut input = Input(&bytes[..body]);
     (input.byte()? == 0xa0).then_some(())?;
-    let most = (BLOCK[0] / stride & !(GROUP - 1)).min(BLOCK[1]);
+    let most = ((BLOCK[0] / stride) & !(GROUP - 1)).min(BLOCK[1]);
     let mut all = vec![0; count.checked_mul(stride)?];
     for block in all.chunks_mut(most * stride) {
         let groups = (block.len() / stride).div_ceil(GROUP);
@@ -327,7 +327,7 @@ mod tests {
     #[test]
     fn cut_and_damaged_views_are_refused_or_decoded() {
         let mut bytes: Vec<u8> = vec![0xa0];
-        bytes.extend((0..400_u32).map(|index| (index * 7919 >> 3) as u8));
+        bytes.extend((0..400_u32).map(|index| ((index * 7919) >> 3) as u8));
         for mode in [CompressionMode::Attributes, CompressionMode::Triangles, CompressionMode::Indices] {
             bytes[0] = [0xa0, 0xe1, 0xd1][mode as usize];
             for length in 0..bytes.len() {
