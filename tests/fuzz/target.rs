@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 use tabray::exact::double_double::DoubleDouble;
 use tabray::exact::{Dual, Formula, Interval, Jet, Scalar, Wide};
-use tabray::fuzz::{Image, Server, review, watch};
+use tabray::fuzz::{self, Image, Server};
 use tabray::render::{Plan, Renderer, trace};
 use tabray::scene::editor::{self, Files, Text, View};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
@@ -576,7 +576,7 @@ pub const TO_REVIEW: [&str; 5] = [
 /// Connects to the server of `tabray watch`, which answers nothing without the token.
 pub fn watch(bytes: &[u8]) {
     thread_local! {
-        static SERVER: Server = watch(*REGISTRY, small(8, 6)).expect("a server");
+        static SERVER: Server = fuzz::watch(*REGISTRY, small(8, 6)).expect("a server");
     }
     SERVER.with(|server| request(server, bytes, &[]));
 }
@@ -595,7 +595,7 @@ impl Waiting {
         let header = "---\nsource: a.rs\n---\n";
         let files = ["one.snap", "one.snap.new", "two.snap", "two.snap.new"]
             .map(|name| (folder.path().join(name), format!("{header}{name}\n").into_bytes()));
-        let server = review(&REGISTRY, folder.path()).expect("a server");
+        let server = fuzz::review(&REGISTRY, folder.path()).expect("a server");
         let waiting = Self { folder, server, files: files.into() };
         waiting.restore();
         waiting
