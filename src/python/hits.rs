@@ -5,12 +5,14 @@ use crate::work::{How, Progress};
 use glam::DVec3;
 use numpy::ndarray::{Array2, ArrayView1};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{PyInt, PyList};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::CString;
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
-use tabray_core::query::{Query, QueryRay};
+use tabray_core::query::{Answer, Query, QueryRay, Verdict};
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 pub use tabray_rays::hits::Asked;
@@ -23,12 +25,18 @@ const TOGETHER: usize = 256;
 /// The number of rays that are answered with 237 bits between two checks for a stop: about a tenth of a second.
 const TIGHT: usize = 16;
 
+/// The least number of rays that start on a surface, and the part of all, one in this many, for which a warning is worth
+/// its while.
+const FEW_STARTS: usize = 8;
+const ONE_IN: usize = 64;
+
 /// The rays of a query.
 pub struct Rays<'py> {
     count: usize,
     origins: Rows<'py>,
     directions: Rows<'py>,
     ends: Option<PyReadonlyArray1<'py, f64>>,
+    leaves: Option<[PyReadonlyArray1<'py, i32>; 2]>,
 }
 
 /// A view of the rays, for other threads.
@@ -37,6 +45,8 @@ struct RayView<'a> {
     origins: View<'a>,
     directions: View<'a>,
     ends: Option<ArrayView1<'a, f64>>,
+    /// The objects and the surfaces that the rays leave.
+    leaves: Option<[ArrayView1<'a, i32>; 2]>,
 }
 
 impl<'py> Rays<'py> {
@@ -45,6 +55,7 @@ impl<'py> Rays<'py> {
         origins: &Bound<'py, PyAny>,
         directions: &Bound<'py, PyAny>,
         t_max: Option<&Bound<'py, PyAny>>,
+        leaves: Option<&Bound<'py, Hits>>,
     ) -> PyResult<Self> {
         let [from, along] = [Vectors::of(origins, "origins")?, Vectors::of(directions, "directions")?];
         let count = match (from.count(), along.count()) {
@@ -55,24 +66,37 @@ impl<'py> Rays<'py> {
             }
             (one, other) => one.or(other).unwrap_or(1),
         };
+        let leaves = leaves.map(|hits| hits.get().starts(hits.py(), count)).transpose()?;
         let ends = t_max.map(|ends| numbers(ends, "t_max", count)).transpose()?;
-        Ok(Self { count, origins: from.rows(count)?, directions: along.rows(count)?, ends })
+        Ok(Self { count, origins: from.rows(count)?, directions: along.rows(count)?, ends, leaves })
     }
 
     fn view(&self) -> RayView<'_> {
         let ends = self.ends.as_ref().map(|ends| ends.as_array());
-        RayView { count: self.count, origins: self.origins.view(), directions: self.directions.view(), ends }
+        let leaves = self.leaves.as_ref().map(|leaves| leaves.each_ref().map(PyReadonlyArray1::as_array));
+        let (origins, directions) = (self.origins.view(), self.directions.view());
+        RayView { count: self.count, origins, directions, ends, leaves }
     }
 }
 
 impl RayView<'_> {
     /// Returns a ray with the t of its end, or a message about its fault.
-    fn ray(&self, index: usize) -> Result<Ray, String> {
+    fn ray(&self, query: &Query, index: usize) -> Result<Ray, String> {
         let (origin, dir) = (self.origins.row(index), self.directions.row(index));
         let ray = QueryRay::new(origin, dir).ok_or_else(|| match dir == DVec3::ZERO {
             true => format!("the direction of ray {index} is 0: a ray goes somewhere"),
             false => format!("ray {index} is not finite: its origin is {origin}, and its direction {dir}"),
         })?;
+        let ray = match self.leaves {
+            None => ray,
+            Some(leaves) => {
+                let [object, surface] = leaves.map(|of| usize::try_from(of[index]).ok());
+                let start = object.zip(surface).and_then(|(object, surface)| query.start(object, surface));
+                ray.leaving(start.ok_or_else(|| {
+                    format!("`leaves` has no proven hit for ray {index}: take those that hit, as in `hits[hits.verdict == 1]`")
+                })?)
+            }
+        };
         let end = self.ends.map_or(f64::INFINITY, |ends| ends[index]);
         if end > 0.0 {
             Ok((ray, end))
@@ -86,7 +110,7 @@ impl RayView<'_> {
 /// of the packet's first ray, and the rays.
 fn in_packets<T: Send>(
     progress: &Progress,
-    rays: &RayView,
+    (query, rays): (&Query, &RayView),
     size: usize,
     packet: impl Fn(u64, &[Ray]) -> Vec<T> + Sync,
     mut sink: impl FnMut(T),
@@ -96,7 +120,7 @@ fn in_packets<T: Send>(
             return Ok(Vec::new());
         }
         let range = first..rays.count.min(first + size);
-        let of: Vec<_> = range.clone().map(|index| rays.ray(index)).collect::<Result<_, _>>()?;
+        let of: Vec<_> = range.clone().map(|index| rays.ray(query, index)).collect::<Result<_, _>>()?;
         let answers = packet(first as u64, &of);
         progress.step(range.len());
         Ok(answers)
@@ -143,6 +167,8 @@ pub struct Hits {
     normal: Py<PyAny>,
     /// The coordinates u and v there, where the shape has some, rounded. (n, 2).
     uv: Py<PyAny>,
+    /// The surface of the object, for `leaves`. int32.
+    surface: Py<PyAny>,
 }
 
 /// A column of answers.
@@ -217,6 +243,7 @@ impl Columns {
             point: of("point")?,
             normal: of("normal")?,
             uv: of("uv")?,
+            surface: of("surface")?,
         })
     }
 }
@@ -238,7 +265,7 @@ pub fn hits(py: Python<'_>, model: &Model, rays: &Rays, asked: &Asked, how: &How
         let (query, mut columns) = (Query::new(model), Columns::new());
         let packet = |first: u64, of: &[Ray]| answers(&query, asked, first, of);
         let add = |answer: Answered| columns.add(&answer);
-        in_packets(progress, &rays, packet_size(asked.tight), packet, add).map(|()| columns)
+        in_packets(progress, (&query, &rays), packet_size(asked.tight), packet, add).map(|()| columns)
     })?;
     columns.map_err(PyValueError::new_err)?.into_hits(py)
 }
@@ -262,7 +289,8 @@ pub fn crossings(
             enters.push(answer.enters.map_or(-1, i8::from));
             columns.add(&answer);
         };
-        in_packets(progress, &rays, packet_size(tight), packet, add).map(|()| (numbers, enters, columns))
+        let size = packet_size(tight);
+        in_packets(progress, (&query, &rays), size, packet, add).map(|()| (numbers, enters, columns))
     })?;
     let (ray, enters, columns) = all.map_err(PyValueError::new_err)?;
     let (ray, enters) = (ray.into_pyarray(py).unbind(), enters.into_pyarray(py).unbind());
@@ -279,23 +307,78 @@ pub fn occluded<'py>(
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let rays = rays.view();
     let may_be = how.run(py, rays.count, |_, progress| {
-        let (query, mut may_be) = (Query::new(model), Vec::new());
+        let (query, mut may_be, mut starts) = (Query::new(model), Vec::new(), 0);
         let packet = |_: u64, rays: &[Ray]| {
             let (of, ends): (Vec<_>, Vec<_>) = rays.iter().cloned().unzip();
-            match fast {
-                true => query.traced(&of).iter().zip(&ends).map(|(answer, end)| answer.t < *end).collect(),
-                false => query.occluded(&of, &ends),
-            }
+            let answers = if fast { query.traced(&of) } else { query.proven(&of, false) };
+            let told = |((answer, ray), end): ((Answer, &QueryRay), &f64)| {
+                let starts = query.starts_on_surface(ray, &answer);
+                let is_hit =
+                    if fast { answer.t < *end } else { answer.any_within(*end).verdict != Verdict::Miss };
+                (is_hit, starts)
+            };
+            answers.into_iter().zip(&of).zip(&ends).map(told).collect()
         };
-        in_packets(progress, &rays, PACKET_SIZE, packet, |is_hit| may_be.push(is_hit)).map(|()| may_be)
+        let add = |(is_hit, is_start): (bool, bool)| {
+            may_be.push(is_hit);
+            starts += usize::from(is_start);
+        };
+        in_packets(progress, (&query, &rays), PACKET_SIZE, packet, add).map(|()| (may_be, starts))
     })?;
-    Ok(may_be.map_err(PyValueError::new_err)?.into_pyarray(py))
+    let (may_be, starts) = may_be.map_err(PyValueError::new_err)?;
+    if starts >= FEW_STARTS && starts * ONE_IN >= may_be.len() {
+        let of = may_be.len();
+        let told = format!(
+            "{starts} of {of} rays start within rounding of a surface, and hit it: `leaves=hits` tells which they leave"
+        );
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(told)?, 1)?;
+    }
+    Ok(may_be.into_pyarray(py))
+}
+
+impl Hits {
+    /// Returns the objects and the surfaces that this many rays leave.
+    fn starts<'py>(&self, py: Python<'py>, rays: usize) -> PyResult<[PyReadonlyArray1<'py, i32>; 2]> {
+        let of =
+            |array: &Py<PyAny>| array.bind(py).extract::<PyReadonlyArray1<'py, i32>>().map_err(PyErr::from);
+        let starts = [of(&self.object)?, of(&self.surface)?];
+        match starts[0].len()? {
+            hits if hits == rays => Ok(starts),
+            hits => Err(PyValueError::new_err(format!(
+                "`leaves` has {hits} hits for {rays} rays: give one for each, as `hits[indices]` does"
+            ))),
+        }
+    }
 }
 
 #[pymethods]
 impl Hits {
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
         self.verdict.bind(py).len()
+    }
+
+    /// Returns some of the answers, chosen as those of an array: by a mask, by indices or by a slice.
+    fn __getitem__(&self, py: Python<'_>, index: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let index = if index.is_instance_of::<PyInt>() {
+            PyList::new(py, [index])?.into_any()
+        } else {
+            index.clone()
+        };
+        let of = |array: &Py<PyAny>| Ok::<_, PyErr>(array.bind(py).get_item(&index)?.unbind());
+        Ok(Self {
+            verdict: of(&self.verdict)?,
+            proof: of(&self.proof)?,
+            object: of(&self.object)?,
+            face: of(&self.face)?,
+            t: of(&self.t)?,
+            t_low: of(&self.t_low)?,
+            t_high: of(&self.t_high)?,
+            distance: of(&self.distance)?,
+            point: of(&self.point)?,
+            normal: of(&self.normal)?,
+            uv: of(&self.uv)?,
+            surface: of(&self.surface)?,
+        })
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -83,7 +83,9 @@ impl Mesh {
 #[pymethods]
 impl Mesh {
     /// Finds the first hits of rays, as `Scene.hits` does. The face is the index of the triangle.
-    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, tight=false, threads=None, progress=None))]
+    #[pyo3(signature = (
+        origins, directions, t_max=None, *, leaves=None, fast=false, tight=false, threads=None, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn hits<'py>(
         &self,
@@ -91,12 +93,13 @@ impl Mesh {
         origins: &Bound<'py, PyAny>,
         directions: &Bound<'py, PyAny>,
         t_max: Option<&Bound<'py, PyAny>>,
+        leaves: Option<&Bound<'py, Hits>>,
         fast: bool,
         tight: bool,
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Hits> {
-        let rays = Rays::of(origins, directions, t_max)?;
+        let rays = Rays::of(origins, directions, t_max, leaves)?;
         hits::hits(
             py,
             &self.model,
@@ -119,12 +122,14 @@ impl Mesh {
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Py<Crossings>> {
-        let rays = Rays::of(origins, directions, t_max)?;
+        let rays = Rays::of(origins, directions, t_max, None)?;
         hits::crossings(py, &self.model, &rays, tight, &How { threads, progress })
     }
 
     /// Tells for each ray whether anything is hit before its end, as `Scene.occluded` does.
-    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, threads=None, progress=None))]
+    #[pyo3(signature = (
+        origins, directions, t_max=None, *, leaves=None, fast=false, threads=None, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn occluded<'py>(
         &self,
@@ -132,11 +137,12 @@ impl Mesh {
         origins: &Bound<'py, PyAny>,
         directions: &Bound<'py, PyAny>,
         t_max: Option<&Bound<'py, PyAny>>,
+        leaves: Option<&Bound<'py, Hits>>,
         fast: bool,
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let rays = Rays::of(origins, directions, t_max)?;
+        let rays = Rays::of(origins, directions, t_max, leaves)?;
         hits::occluded(py, &self.model, &rays, fast, &How { threads, progress })
     }
 

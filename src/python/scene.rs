@@ -214,10 +214,14 @@ impl Scene {
 
     /// Finds the first hits of rays, each with a proof. Origins and directions are arrays of shape (n, 3), or (3,)
     /// for one that is used for all rays. Arrays of float64 or float32 are not copied. Directions need not be unit
-    /// vectors: t is in lengths of the direction. `t_max` is the t at which rays end, a number or one for each.
+    /// vectors: t is in lengths of the direction. `t_max` is the t at which rays end, a number or one for each. `leaves`
+    /// are the hits of other rays at which these start, one for each: a rounded point lies on either side of its surface,
+    /// which a ray that leaves it does not hit there.
     /// `fast` proves nothing and returns the tracer's hits; `tight` narrows the bounds of t with 237 bits, in many
     /// times the time. `progress` is called with the numbers of finished rays and of all rays.
-    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, tight=false, threads=None, progress=None))]
+    #[pyo3(signature = (
+        origins, directions, t_max=None, *, leaves=None, fast=false, tight=false, threads=None, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn hits<'py>(
         &self,
@@ -225,12 +229,13 @@ impl Scene {
         origins: &Bound<'py, PyAny>,
         directions: &Bound<'py, PyAny>,
         t_max: Option<&Bound<'py, PyAny>>,
+        leaves: Option<&Bound<'py, Hits>>,
         fast: bool,
         tight: bool,
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Hits> {
-        let rays = Rays::of(origins, directions, t_max)?;
+        let rays = Rays::of(origins, directions, t_max, leaves)?;
         let model = self.with(py, Accuracy::Exact)?;
         hits::hits(py, &model, &rays, &Asked { fast, tight, ..Asked::default() }, &How { threads, progress })
     }
@@ -250,14 +255,17 @@ impl Scene {
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Py<Crossings>> {
-        let rays = Rays::of(origins, directions, t_max)?;
+        let rays = Rays::of(origins, directions, t_max, None)?;
         let model = self.with(py, Accuracy::Exact)?;
         hits::crossings(py, &model, &rays, tight, &How { threads, progress })
     }
 
     /// Tells for each ray whether anything is hit before `t_max`, as for shadows. False is proven; True also stands
-    /// where 237 bits do not tell. With `fast`, nothing is proven.
-    #[pyo3(signature = (origins, directions, t_max=None, *, fast=false, threads=None, progress=None))]
+    /// where 237 bits do not tell. With `fast`, nothing is proven. `leaves` is that of `hits`; without it, a warning tells
+    /// of rays that start on a surface.
+    #[pyo3(signature = (
+        origins, directions, t_max=None, *, leaves=None, fast=false, threads=None, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn occluded<'py>(
         &self,
@@ -265,11 +273,12 @@ impl Scene {
         origins: &Bound<'py, PyAny>,
         directions: &Bound<'py, PyAny>,
         t_max: Option<&Bound<'py, PyAny>>,
+        leaves: Option<&Bound<'py, Hits>>,
         fast: bool,
         threads: Option<usize>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let rays = Rays::of(origins, directions, t_max)?;
+        let rays = Rays::of(origins, directions, t_max, leaves)?;
         let model = self.with(py, Accuracy::Exact)?;
         hits::occluded(py, &model, &rays, fast, &How { threads, progress })
     }

@@ -32,7 +32,10 @@ class Hits:
     def normal(self) -> NDArray[np.float64]: ...
     @property
     def uv(self) -> NDArray[np.float64]: ...
+    @property
+    def surface(self) -> NDArray[np.int32]: ...
     def __len__(self) -> int: ...
+    def __getitem__(self, index: Any) -> Hits: ...
 
 @final
 class Crossings(Hits):
@@ -80,6 +83,7 @@ class Mesh:
         directions: ArrayLike,
         t_max: ArrayLike | None = None,
         *,
+        leaves: Hits | None = None,
         fast: bool = False,
         tight: bool = False,
         threads: int | None = None,
@@ -101,6 +105,7 @@ class Mesh:
         directions: ArrayLike,
         t_max: ArrayLike | None = None,
         *,
+        leaves: Hits | None = None,
         fast: bool = False,
         threads: int | None = None,
         progress: Progress | None = None,
@@ -136,6 +141,7 @@ class Scene:
         directions: ArrayLike,
         t_max: ArrayLike | None = None,
         *,
+        leaves: Hits | None = None,
         fast: bool = False,
         tight: bool = False,
         threads: int | None = None,
@@ -157,6 +163,7 @@ class Scene:
         directions: ArrayLike,
         t_max: ArrayLike | None = None,
         *,
+        leaves: Hits | None = None,
         fast: bool = False,
         threads: int | None = None,
         progress: Progress | None = None,

@@ -182,3 +182,37 @@ def test_a_process_that_was_forked_asks_as_well(balls):
     if child == 0:
         os._exit(0 if len(balls.hits(*rays(1000))) == 1000 else 1)
     assert os.waitpid(child, 0)[1] == 0
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_rays_that_start_at_hits_do_not_hit_them(scale):
+    phi = (1 + 5**0.5) / 2
+    corners = np.array([[x, y * phi, 0] for x in (-1, 1) for y in (-1, 1)])
+    corners = scale * (np.vstack([np.roll(corners, turn, axis=1) for turn in range(3)]) + [3.1, -2.3, 5.7])
+    near = np.linalg.norm(corners[:, None] - corners, axis=2) < 2.1 * scale
+    faces = [
+        (a, b, c) for a in range(12) for b in range(a) for c in range(b) if near[a, b] and near[b, c] and near[a, c]
+    ]
+    mesh = tabray.mesh(corners, faces)
+    origins, directions = rays(4000)
+    hits = mesh.hits(scale * (origins + [3.1, -2.3, 5.7]), directions)
+    hits = hits[hits.verdict == tabray.Verdict.HIT]
+    assert len(hits) > 300
+    middle = corners.mean(axis=0)
+    outward = hits.normal * np.sign(np.sum(hits.normal * (hits.point - middle), axis=1))[:, None]
+    slant = outward + 0.9 * outward[:, [1, 2, 0]] / 2
+    slant[np.sum(slant * outward, axis=1) < 0.1] *= -1
+    slant = np.where(np.sum(slant * outward, axis=1)[:, None] < 0.1, outward, slant)
+    assert not mesh.occluded(hits.point, slant, leaves=hits).any()
+    assert mesh.occluded(hits.point, -slant, leaves=hits).all()
+    with pytest.warns(UserWarning, match="start within rounding of a surface"):
+        mesh.occluded(hits.point, slant)
+
+
+def test_starts_that_are_no_hits_are_refused(balls):
+    hits = balls.hits([[0, 0, 9], [0, 9, 9]], [[0, 0, -1], [0, 0, -1]])
+    with pytest.raises(ValueError, match="no proven hit for ray 1"):
+        balls.hits(hits.point[0], [[0, 0, 1]] * 2, leaves=hits)
+    with pytest.raises(ValueError, match="2 hits for 1 rays"):
+        balls.hits(hits.point[:1], [[0, 0, 1]], leaves=hits)
+    assert hits[0].t.tolist() == hits[:1].t.tolist() == hits[hits.verdict == 1].t.tolist() == [7]
