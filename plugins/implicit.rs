@@ -9,6 +9,11 @@ static FORMULA: Pparm<Field> = Pparm::required(
     "formula",
     "the formula, which is 0 on the surface, below 0 inside of it and above 0 outside",
 );
+static WHERE: Pparm<Option<Field>> = Pparm::or(
+    "where",
+    "a formula that cuts off the surface where it is below 0; where it is 0, the surface ends",
+    None,
+);
 static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the formula's coordinates", DVec3::ZERO)
     .alias(&["centre"])
     .unit("world coordinates");
@@ -36,7 +41,7 @@ static CAPPED: Pparm<bool> = Pparm::or(
 
 static EXTENT: OneOf = OneOf { meaning: "what clips the surface", names: &["box", "clip"] };
 
-const TABLE: Table = &[&FORMULA, &CENTER, &BOX, &CLIP, &EXTENT, &CAPPED];
+const TABLE: Table = &[&FORMULA, &WHERE, &CENTER, &BOX, &CLIP, &EXTENT, &CAPPED];
 
 inventory::submit! {
     Entity::shape("implicit", "a surface by its formula", &[TABLE], |args| {
@@ -48,9 +53,11 @@ inventory::submit! {
         let Reduced { formula, denominator, warnings } = field::reduced(args.get(&FORMULA));
         let ends = corners.map(|corner| corner.to_array());
         let (formula, domain) = (formula.clone().within(ends), formula.domain(ends));
+        let is_clipped = clip.is_some();
+        let extent = if is_clipped { "the box around its `clip`" } else { "its box" };
         let refusal = |what: &str, help| Refusal {
             attribute: Some("formula"),
-            message: format!("has a formula that is {what} in its box"),
+            message: format!("has a formula that is {what} in {extent}"),
             help,
         };
         if domain.as_ref().is_some_and(|domain| field::bounds(domain, corners).high < 0.0) {
@@ -69,12 +76,24 @@ inventory::submit! {
         if field::is_nowhere(&formula, corners) {
             return Err(refusal(
                 "nowhere 0",
-                "the surface is where the formula is 0: change the formula, or the box",
+                if is_clipped {
+                    "no object is in view, as the surface is where the formula is 0: change the formula, or what clips it"
+                } else {
+                    "the surface is where the formula is 0: change the formula, or the box"
+                },
             ));
         }
+        let condition: Vec<_> =
+            args.get(&WHERE).into_iter().flat_map(|given| [given.domain(ends), Some(given)]).flatten().collect();
+        if condition.iter().any(|condition| field::bounds(condition, corners).high < 0.0) {
+            return Err(Refusal {
+                attribute: Some("where"),
+                message: format!("has a condition that is nowhere 0 or more in {extent}"),
+                help: "the surface is where this formula is not below 0: change it, or its sign",
+            });
+        }
         let is_negated = denominator.is_some_and(|denominator| field::bounds(&denominator, corners).low <= 0.0);
-        let is_clipped = clip.is_some();
-        let surface = Surface { formula, domain, is_negated, corners, is_clipped, why_not_closed: OnceLock::new() };
+        let surface = Surface { formula, domain, condition, is_negated, corners, is_clipped, why_not_closed: OnceLock::new() };
         let body = Body { warnings, ..Body::implicit(surface, Frame::at(args.get(&CENTER))) };
         match clip {
             Some(clip) => clip.cut(args, body, is_capped),
@@ -98,6 +117,8 @@ struct Surface {
     formula: Field,
     /// A formula that is below 0 where the formula of the surface is not defined, if there are such places in the box.
     domain: Option<Field>,
+    /// Formulas that are below 0 where the scene cuts the surface off.
+    condition: Vec<Field>,
     /// Whether the scene's formula divides by a value that may be 0 or less in the box.
     is_negated: bool,
     corners: [DVec3; 2],
@@ -109,7 +130,9 @@ struct Surface {
 
 impl Surface {
     fn find_why_not_closed(&self) -> Option<&'static str> {
-        if self.domain.is_some() {
+        if !self.condition.is_empty() {
+            Some("its `where` cuts its surface")
+        } else if self.domain.is_some() {
             Some("its formula is not defined everywhere in its box")
         } else if self.is_negated {
             Some("its formula divides by what may be 0 or less in its box")
@@ -135,11 +158,20 @@ impl Implicit for Surface {
     }
 
     fn is_cut(&self) -> bool {
-        self.domain.is_some()
+        self.domain.is_some() || !self.condition.is_empty()
     }
 
     fn inside_trim<N: Scalar>(&self, at: [N; 3]) -> N {
-        self.domain.as_ref().map_or(N::constant(1.0), |domain| domain.at(at))
+        self.condition
+            .iter()
+            .chain(&self.domain)
+            .map(|one| one.at(at))
+            .reduce(N::min)
+            .unwrap_or(N::constant(1.0))
+    }
+
+    fn condition<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.condition.iter().map(|one| one.at(at)).reduce(N::min).unwrap_or(N::constant(1.0))
     }
 
     fn field(&self) -> Option<&Field> {

@@ -48,6 +48,15 @@ impl Parametric for Surface {
         per_axis(|axis| self.at[axis].at(uv) + N::constant(self.center[axis]))
     }
 
+    fn as_written<F: Float>(&self, uv: [Interval<F>; 2]) -> Option<[Interval<F>; 3]> {
+        let seen = [0, 1, 2].map(|axis| self.at[axis].written::<F>().at(&uv));
+        let is_defined = seen.iter().all(|seen| seen.is_defined() != Some(false));
+        let place = |axis: usize| {
+            Interval { low: seen[axis].low, high: seen[axis].high } + Interval::constant(self.center[axis])
+        };
+        is_defined.then(|| per_axis(place))
+    }
+
     fn ends(&self) -> [[f64; 2]; 2] {
         self.ends
     }

@@ -46,5 +46,5 @@ inventory::submit! {
         }
         Ok(Body::placed(&object, (placement, args.planes_end_at()), args.material_of_all()))
     })
-    .known_as(&["translate", "rotate", "transform", "instance", "move"])
+    .known_as(&["translate", "rotate", "transform", "instance", "move", "scale", "rotation", "translation"])
 }

@@ -15,6 +15,7 @@ use tabray_lang::import::{self, Imported};
 use tabray_lang::reader;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
+use tabray_tools::diagnosis;
 
 /// Convert a scene to the other syntax, or a surface of another program to a scene
 ///
@@ -55,6 +56,9 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         source = Source::of_text(&args.scene.path.with_extension("ray"), text.clone(), &args.scene.set);
     }
     let model = input::print_warnings(source.load(registry, None))?.model;
+    if imported.is_some() {
+        messages::remark(diagnosis::tried(&model));
+    }
     // What was written for people to read stays as it is.
     let readable = imported.filter(|_| syntax == Syntax::Notes && args.scene.set.values.is_empty());
     let is_copy = readable.is_none();

@@ -47,7 +47,7 @@ pub use tabray_world::scene::profile::{Profile, ProfileLine};
 // What the traits of shapes and cameras take and return.
 pub use tabray_exact::double_double::DoubleDouble;
 pub use tabray_exact::dual::Dual;
-pub use tabray_exact::interval::{Interval, Wide};
+pub use tabray_exact::interval::{Float, Interval, Wide};
 pub use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
 pub use tabray_shapes::Made;
 pub use tabray_shapes::implicit::Implicit;

@@ -1,7 +1,7 @@
 //! The picture of a file of SURFER or surf, and its conversion to a scene.
 
 use super::expression::{Value, linear};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use std::fmt::Write;
 use tabray_core::text::shortest;
 
@@ -80,13 +80,12 @@ impl Picture {
         let mut bodies = String::new();
         let mut functions = self.functions.clone();
         let middle = at((low + high) / 2.0);
-        let half = if self.is_ball() {
-            DVec3::splat(size * (high - low).x / 2.0)
-        } else {
-            let half = (high - low) / 2.0;
-            (turn.x_axis * half.x).abs() + (turn.y_axis * half.y).abs() + (turn.z_axis * half.z).abs()
+        let half = (high - low) / 2.0;
+        let half = (turn.x_axis * half.x).abs() + (turn.y_axis * half.y).abs() + (turn.z_axis * half.z).abs();
+        let extent = match self.clips[..] {
+            [] => format!("box      {}  {}", point(middle - half), point(middle + half)),
+            _ => "clip     cut".to_owned(),
         };
-        let clip = self.clip(turn, offset);
         for (index, surface) in self.surfaces.iter().enumerate() {
             let number = if index == 0 { String::new() } else { (index + 1).to_string() };
             let mut formula = surface.formula.text.clone();
@@ -97,9 +96,6 @@ impl Picture {
                 functions.push((name.clone(), formula));
                 formula = format!("{name}({})", arguments.join(", "));
             }
-            if !clip.is_empty() {
-                formula = format!("if({clip} < 0, {formula}, 1)");
-            }
             let [front, back] = &surface.sides;
             bodies += &material(&format!("front{number}"), front);
             let shader = if front == back {
@@ -109,11 +105,12 @@ impl Picture {
                 let _ = writeln!(bodies, "sides both{number} {{ back back{number} }}\n");
                 format!("    shader   both{number}\n")
             };
+            if index == 0 {
+                bodies += &self.cut(turn, offset);
+            }
             let _ = writeln!(
                 bodies,
-                "implicit surface{number}\n{{\n    material front{number}\n{shader}    formula  \"{formula}\"\n    box      {}  {}\n}}\n",
-                point(middle - half),
-                point(middle + half)
+                "implicit surface{number}\n{{\n    material front{number}\n{shader}    formula  \"{formula}\"\n    {extent}\n}}\n"
             );
         }
         let mut text = String::new();
@@ -150,10 +147,6 @@ impl Picture {
         text
     }
 
-    fn is_ball(&self) -> bool {
-        matches!(self.clips[..], [Clip::Ball(..)])
-    }
-
     /// Returns a box around the visible parts, in the picture's coordinates.
     fn bounds(&self) -> [DVec3; 2] {
         let [wide, high] = self.size;
@@ -178,33 +171,39 @@ impl Picture {
         bounds
     }
 
-    /// Writes a formula in the scene's coordinates that is negative where the surface is kept, or an empty text if all
-    /// of it is.
-    fn clip(&self, turn: DMat3, offset: DVec3) -> String {
-        let back = turn.inverse();
+    /// Writes the closed object that cuts the surfaces, in the scene's coordinates, or an empty text if none does.
+    fn cut(&self, turn: DMat3, offset: DVec3) -> String {
         let size = turn.x_axis.length();
-        let row = |row: usize, at: f64| linear(back.row(row).to_array(), -back.row(row).dot(offset) - at);
-        let square = |text: String| if text.len() == 1 { format!("{text}^2") } else { format!("({text})^2") };
-        let one = |clip: &Clip| match *clip {
-            Clip::Ball(middle, radius) => {
-                let middle = turn * middle + offset;
-                let squares =
-                    [0, 1, 2].map(|axis| square(linear(DMat3::IDENTITY.col(axis).to_array(), -middle[axis])));
-                format!("{} - {}", squares.join(" + "), square(number(size * radius)))
+        let at = |place: DVec3| point(turn * place + offset);
+        let [low, high] = self.bounds();
+        match self.clips[..] {
+            [] => String::new(),
+            [Clip::Ball(middle, radius)] => ball("cut", &at(middle), size * radius),
+            [Clip::Ball(middle, radius), ..] => {
+                // Only the planes cut the ball: the other sides of the slab are away from it.
+                let away = DVec3::splat(0.5 * radius);
+                let (mut below, mut above) = (low - away, high + away);
+                for clip in &self.clips {
+                    match *clip {
+                        Clip::Plane(z, 1.0) => above.z = above.z.min(z),
+                        Clip::Plane(z, _) => below.z = below.z.max(z),
+                        _ => {}
+                    }
+                }
+                let slab = cuboid("slab", turn, &at((below + above) / 2.0), above - below);
+                ball("ball", &at(middle), size * radius)
+                    + &slab
+                    + "intersection cut { objects ball slab }\n\n"
             }
-            Clip::Cylinder(middle, radius) => {
-                let squares = [0, 1].map(|axis| square(row(axis, middle[axis])));
-                format!("{} - {}", squares.join(" + "), square(shortest(radius)))
-            }
-            Clip::Cube(middle, half) => {
-                let sides = [0, 1, 2].map(|axis| format!("abs({})", row(axis, middle[axis])));
-                format!("max({}) - {}", sides.join(", "), shortest(half))
-            }
-            Clip::Plane(z, 1.0) => row(2, z),
-            Clip::Plane(z, _) => format!("-({})", row(2, z)),
-        };
-        let all: Vec<_> = self.clips.iter().map(one).collect();
-        if all.len() > 1 { format!("max({})", all.join(", ")) } else { all.concat() }
+            [Clip::Cylinder(middle, radius), ..] => format!(
+                "cylinder cut\n{{\n    material  front\n    base      {}\n    direction {}\n    height    {}\n    radius    {}\n}}\n\n",
+                at(middle.with_z(low.z)),
+                point(turn * DVec3::Z),
+                number(size * (high - low).z),
+                number(size * radius),
+            ),
+            _ => cuboid("cut", turn, &at((low + high) / 2.0), high - low),
+        }
     }
 
     /// Returns the names of the numbers that the scene needs.
@@ -230,6 +229,26 @@ fn is_similar(map: DMat3) -> bool {
     size > 0.0
         && map.determinant() > 0.0
         && product.to_cols_array().iter().all(|element| element.abs() <= SIMILAR * size)
+}
+
+fn ball(name: &str, middle: &str, radius: f64) -> String {
+    format!("sphere {name} {{ material front  center {middle}  radius {} }}\n\n", number(radius))
+}
+
+/// Writes a box around a point, with these sides before a map that preserves shapes.
+fn cuboid(name: &str, turn: DMat3, middle: &str, sides: DVec3) -> String {
+    let size = turn.x_axis.length();
+    let sides = point(size * sides);
+    let turn = DQuat::from_mat3(&(turn * (1.0 / size)));
+    let axis = turn.xyz();
+    if axis.length() < SIMILAR {
+        return format!("box {name} {{ material front  center {middle}  size {sides} }}\n\n");
+    }
+    let angle = number((2.0 * libm::atan2(axis.length(), turn.w)).to_degrees());
+    let axis = point(axis.normalize());
+    format!(
+        "box straight {{ material front  center 0 0 0  size {sides} }}\nplace {name} {{ object straight  rotation {axis} {angle}  translation {middle} }}\n\n"
+    )
 }
 
 fn material(name: &str, look: &Look) -> String {

@@ -162,7 +162,8 @@ fn a_script_of_surf_is_a_scene() {
     assert!(text.contains("let a 3\nlet b \"a/3\"\n"), "{text}");
     assert!(text.contains("(x - a)^2 + (y - b)^2 + (z - 2)^2 - 1"), "{text}");
     assert!(text.contains("pixeldim 300 200") && text.contains("width    15"), "{text}");
-    assert!(text.contains("x^2 + y^2 + z^2 - 4^2"), "{text}");
+    assert!(text.contains("sphere cut { material front  center 0 0 0  radius 4 }"), "{text}");
+    assert!(text.contains("    clip     cut\n"), "{text}");
     assert!(text.contains("ambient 0.4 0 0.08"), "{text}");
     let left: Vec<_> = left.iter().map(|(word, line)| format!("{word} {line}")).collect();
     assert_eq!(left, ["antialiasing 2", "root_finder 2", "filename 13", "save_color_image 13"]);
@@ -197,7 +198,8 @@ fn a_stretched_surface_and_several_are_scenes() {
     let (text, ..) =
         imported("a.surf", "surface = x^2+y^2+z^2-9; scale_x = 0.5; clip = cube; radius = 5; draw_surface;");
     assert!(
-        text.contains("formula_1(0.5*x, y, z)") && text.contains("max(abs(x), abs(y), abs(z)) - 5"),
+        text.contains("formula_1(0.5*x, y, z)")
+            && text.contains("box cut { material front  center 0 0 0  size 10 10 10 }"),
         "{text}"
     );
     let (text, ..) = imported(
@@ -205,7 +207,17 @@ fn a_stretched_surface_and_several_are_scenes() {
         "surface = x; surface2 = rotate(y + z^2, 1, xAxis) - 1; clip = cylinder; clip_front = 3; clip_back = -2; draw_surface;",
     );
     assert!(text.contains("implicit surface2") && text.contains("let turned(x, y, z)"), "{text}");
-    assert!(text.contains("max(x^2 + y^2 - (10)^2, z - 3, -(z + 2))"), "{text}");
+    assert!(
+        text.contains("base      0 0 -2\n    direction 0 0 1\n    height    5\n    radius    10\n"),
+        "{text}"
+    );
+    // The ball is cut in front; the cube is turned with the picture.
+    let (text, ..) = imported("a.surf", "surface = x*y*z - 1; radius = 5; clip_front = 3; draw_surface;");
+    assert!(text.contains("box slab { material front  center 0 0 -2.25  size 15 15 10.5 }"), "{text}");
+    assert!(text.contains("intersection cut { objects ball slab }") && !text.contains("if("), "{text}");
+    let (text, ..) =
+        imported("a.surf", "surface = x*y*z - 1; clip = cube; radius = 5; rot_z = 0.5; draw_surface;");
+    assert!(text.contains("place cut { object straight  rotation 0 0 "), "{text}");
 }
 
 #[test]

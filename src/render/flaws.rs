@@ -2,6 +2,7 @@
 //! lack light from beyond the longest path.
 
 use crate::observer::{Count, RayKind, TraceObserver};
+use glam::DVec3;
 use std::collections::BTreeMap;
 use tabray_world::certify::Doubt;
 
@@ -34,10 +35,20 @@ pub struct FarPaths {
     pub of: u64,
 }
 
-/// The numbers of pixels with a camera ray whose first hit could not be decided, by the index of the object that it
+/// The pixels with a camera ray whose first hit could not be decided, by the index of the object that it
 /// may hit, and by the reason. Where a pixel has several, the first counts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Undecided(pub BTreeMap<(usize, Doubt), u64>);
+pub struct Undecided(pub BTreeMap<(usize, Doubt), UndecidedPixels>);
+
+/// Pixels whose first hit could not be decided for one reason.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UndecidedPixels {
+    /// Their number.
+    pub count: u64,
+    /// Where one of their rays may hit the object, in world coordinates: the point with the least x, and of those with the
+    /// same the one with the least y.
+    pub at: DVec3,
+}
 
 impl Flaws {
     /// Adds the flaws of another part of the image.
@@ -45,7 +56,7 @@ impl Flaws {
         self.cuts.add(other.cuts);
         self.far = FarPaths { rays: self.far.rays + other.far.rays, of: self.far.of + other.far.of };
         for (of, pixels) in &other.undecided.0 {
-            *self.undecided.0.entry(of.clone()).or_default() += pixels;
+            self.undecided.add(of.clone(), *pixels);
         }
     }
 }
@@ -60,7 +71,18 @@ impl BudgetCuts {
 impl Undecided {
     /// Returns the number of pixels.
     pub fn pixels(&self) -> u64 {
-        self.0.values().sum()
+        self.0.values().map(|pixels| pixels.count).sum()
+    }
+
+    fn add(&mut self, of: (usize, Doubt), UndecidedPixels { count, at }: UndecidedPixels) {
+        let known = self.0.entry(of).or_insert(UndecidedPixels { count: 0, at });
+        known.count += count;
+        let order_of = |one: f64, other: f64| one.total_cmp(&other);
+        let order =
+            order_of(at.x, known.at.x).then(order_of(at.y, known.at.y)).then(order_of(at.z, known.at.z));
+        if order.is_lt() {
+            known.at = at;
+        }
     }
 }
 
@@ -74,7 +96,9 @@ impl TraceObserver for Flaws {
             Count::Rays(RayKind::Primary, count) => self.far.of += count as u64,
             Count::Far(count) => self.far.rays += count as u64,
             Count::Cut(most) => self.cuts.add(BudgetCuts { pixels: 1, most }),
-            Count::Undecided(object, doubt) => *self.undecided.0.entry((object, doubt)).or_default() += 1,
+            Count::Undecided(object, doubt, at) => {
+                self.undecided.add((object, doubt), UndecidedPixels { count: 1, at });
+            }
             _ => {}
         }
     }

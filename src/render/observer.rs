@@ -85,8 +85,8 @@ pub enum Count {
     /// This number of rays from the viewer lack light from mirrors or through glass, because the notes' rules end
     /// their paths.
     Far(usize),
-    /// A pixel has a camera ray for which it is undecided whether it hits the object of this index first.
-    Undecided(usize, Doubt),
+    /// A pixel has a camera ray for which it is undecided whether it hits the object of this index first, at this point.
+    Undecided(usize, Doubt, DVec3),
 }
 
 /// The kinds of rays.

@@ -198,6 +198,10 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
         inside(0).min(inside(1)).min(inside(2)).min(self.formula.inside_trim(at))
     }
 
+    fn condition<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.formula.condition(at)
+    }
+
     fn extent(&self) -> [DVec3; 2] {
         [self.low, self.high]
     }

@@ -271,6 +271,20 @@ fn wide_intervals_hold_the_right_results() {
         holds(wide.cos(), &big.cos(), 40.0, "cos");
         holds(wide.tan(), &big.tan(), 40.0, "tan");
         holds(y.atan2(x), &big_b.atan2(&big_a), 80.0, "angle");
+        // The second end of a narrow interval follows from the first.
+        for power in [-33, -40, -80, -160, -234] {
+            let end = p + p * q * f256::from(2_f64.powi(power - 8));
+            let (narrow, big_end) = (Wide { low: p, high: end }, exactly(end));
+            for (bounds, ends) in
+                [(narrow.exp(), [big.exp(), big_end.exp()]), (narrow.ln(), [big.ln(), big_end.ln()])]
+            {
+                let (low, high) = (widest(bounds.low), widest(bounds.high));
+                let is_tight = bounds.width()
+                    < f256::from(1e3) * (end - p + p * f256::EPSILON) * bounds.magnitude().max(p);
+                let holds = ends.iter().all(|end| low <= *end && *end <= high);
+                assert!(holds && is_tight, "{narrow:?}: {bounds:?}");
+            }
+        }
         let chosen = if big_a >= big_b { &big_a * &big_b } else { &big_a / &big_b };
         holds((x - y).choose(x * y, x / y), &chosen, 4.0, "choice");
         let power = (exactly(q) * big.ln()).exp();

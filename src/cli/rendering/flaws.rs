@@ -1,7 +1,7 @@
 //! What is told of an image that is rendered: what is wrong with its pixels, and what is proven of them.
 
 use crate::process::messages;
-use tabray_core::render::flaws::{BudgetCuts, FarPaths, Flaws, Undecided};
+use tabray_core::render::flaws::{BudgetCuts, FarPaths, Flaws, Undecided, UndecidedPixels};
 use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::Proofs;
@@ -62,9 +62,11 @@ pub fn tell_of_far(FarPaths { rays, of }: FarPaths) {
 }
 
 fn warn_of_undecided(undecided: &Undecided, model: &Model) {
-    let of = |((object, doubt), pixels): (&(usize, Doubt), &u64)| {
-        let why = format!("`{}` {doubt}", model.objects[*object].args.name());
-        if undecided.0.len() > 1 { format!("{why} ({pixels})") } else { why }
+    let of = |((object, doubt), pixels): (&(usize, Doubt), &UndecidedPixels)| {
+        let place = |at: f64| format!("{}{}", if at < 0.0 { "-" } else { "" }, short(at.abs()));
+        let at = pixels.at.to_array().map(place).join(" ");
+        let why = format!("`{}` {doubt}, as at {at}", model.objects[*object].args.name());
+        if undecided.0.len() > 1 { format!("{why} ({})", pixels.count) } else { why }
     };
     let reasons: Vec<_> = undecided.0.iter().map(of).collect();
     let (named, others) = reasons.split_at(reasons.len().min(MAX_REASONS));

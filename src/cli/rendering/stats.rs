@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use tabray_core::render::flaws::{BudgetCuts, Flaws};
+use tabray_core::render::flaws::{BudgetCuts, Flaws, UndecidedPixels};
 use tabray_core::render::observer::RayKind;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::{Proofs, RayStats, TestCounts};
@@ -142,7 +142,7 @@ impl Stats {
         if !undecided.is_empty() {
             let _ = writeln!(out, "\n{:<12} {:>14}", "undecided", "pixels");
         }
-        for Undecided { object, pixels, reason } in undecided {
+        for Undecided { object, pixels, reason, .. } in undecided {
             let _ = writeln!(out, "{object:<12} {pixels:>14}  {reason}");
         }
         let unchecked = unchecked::of(&Plan::new(model));
@@ -205,9 +205,10 @@ impl Stats {
 
 /// Lists the pixels whose first hit could not be decided, by object and reason.
 fn undecided<'m>(tally: &RayStats, model: &'m Model) -> Vec<Undecided<'m>> {
-    let of = |((object, doubt), pixels): (&(usize, Doubt), &u64)| Undecided {
+    let of = |((object, doubt), pixels): (&(usize, Doubt), &UndecidedPixels)| Undecided {
+        at: pixels.at.to_array(),
         object: model.objects[*object].args.name(),
-        pixels: *pixels,
+        pixels: pixels.count,
         reason: doubt.to_string(),
     };
     tally.flaws.undecided.0.iter().map(of).collect()
@@ -244,6 +245,8 @@ struct Counts<'m> {
 /// Pixels whose first hit could not be decided.
 #[derive(Serialize)]
 struct Undecided<'m> {
+    /// Where one of their rays may hit the object.
+    at: [f64; 3],
     /// The name of the object that may be hit first.
     object: &'m str,
     /// The number of pixels.

@@ -39,6 +39,8 @@ pub struct FieldOf<const N: usize> {
     written: Arc<Formula>,
     /// Whether the formula as read has divisors that may be 0.
     divides: bool,
+    /// Whether the formula as read is defined and continuous everywhere, by each of its operations.
+    is_total: bool,
     /// Whether this formula changes its sign where the one as read does: no powers of its factors were left out.
     keeps_signs: bool,
     /// What is 0 where a divisor of the formula as read is 0, if this one was cleared of its denominators.
@@ -78,7 +80,18 @@ impl<const COUNT: usize> FieldOf<COUNT> {
             quick.program = program;
         }
         let (written, divides) = (formula.clone(), divides(&formula.steps));
-        Some(Self { formula, written, divides, keeps_signs: true, poles: None, quick, products, cells: None })
+        let is_total = formula.steps.iter().all(|step| step.is_total());
+        Some(Self {
+            formula,
+            written,
+            divides,
+            is_total,
+            keeps_signs: true,
+            poles: None,
+            quick,
+            products,
+            cells: None,
+        })
     }
 
     /// Returns a simpler field in place of this one. `poles` is 0 where a divisor is 0, if the field has no more
@@ -86,7 +99,8 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     pub(super) fn simplified(&self, to: Self, poles: Option<Self>, keeps_signs: bool) -> Self {
         let poles = poles.map(Arc::new).or_else(|| self.poles.clone());
         let keeps_signs = keeps_signs && self.keeps_signs;
-        Self { written: self.written.clone(), divides: self.divides, keeps_signs, poles, ..to }
+        let Self { divides, is_total, .. } = *self;
+        Self { written: self.written.clone(), divides, is_total, keeps_signs, poles, ..to }
     }
 
     /// Tells whether the formula as read changes its sign at each simple root of this one.
@@ -97,6 +111,11 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Returns the formula as read.
     pub(super) fn as_written(&self) -> &Formula {
         &self.written
+    }
+
+    /// Tells whether the formula as read is defined and continuous everywhere, by each of its operations.
+    pub fn is_total(&self) -> bool {
+        self.is_total
     }
 
     /// Tells whether the formula as read has divisors that may be 0.

@@ -41,6 +41,19 @@ impl Step {
         }
     }
 
+    /// Tells whether the operation is defined and continuous for all numbers.
+    pub fn is_total(self) -> bool {
+        match self {
+            Self::Div | Self::Spline => false,
+            Self::Powi(exponent) => exponent >= 0,
+            Self::Call(function) => matches!(
+                function,
+                Function::Sin | Function::Cos | Function::Exp | Function::Abs | Function::Min | Function::Max
+            ),
+            _ => true,
+        }
+    }
+
     /// Returns the estimated number of arithmetic operations: 8 for a `libm` function, 24 for a power,
     /// 160 for noise.
     pub fn cost(self) -> u64 {

@@ -8,6 +8,7 @@ mod seen;
 
 pub use seen::Seen;
 
+use super::Formula;
 use super::field::FieldOf;
 use super::step::Step;
 use crate::interval::{Float, Interval};
@@ -30,7 +31,7 @@ pub enum Obstacle {
     Slope,
 }
 
-impl<const N: usize> FieldOf<N> {
+impl Formula {
     /// Returns the first operation, in the order of evaluation, that may not be defined at the points of a box, or
     /// else the first that may not be continuous.
     pub fn obstacle(&self, at: &[Interval]) -> Obstacle {
@@ -41,14 +42,25 @@ impl<const N: usize> FieldOf<N> {
                 first.get_or_insert(step);
             }
         });
-        let text = |step: usize| self.as_written().text_of(step).to_owned();
+        let text = |step: usize| self.text_of(step).to_owned();
         let undefined = undefined.map(|step| Obstacle::Undefined(text(step)));
         undefined.or(jump.map(|step| Obstacle::Jump(text(step)))).unwrap_or(Obstacle::Slope)
     }
 
+    fn written<F: Float>(&self) -> Written<'_, F> {
+        Written { steps: &self.steps, waiting: Vec::new() }
+    }
+}
+
+impl<const N: usize> FieldOf<N> {
+    /// Returns what [`Formula::obstacle`] tells of the formula as it was written.
+    pub fn obstacle(&self, at: &[Interval]) -> Obstacle {
+        self.as_written().obstacle(at)
+    }
+
     /// Returns the evaluation of the formula as it was written.
     pub fn written<F: Float>(&self) -> Written<'_, F> {
-        Written { steps: &self.as_written().steps, waiting: Vec::new() }
+        self.as_written().written()
     }
 }
 

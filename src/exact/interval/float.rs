@@ -30,6 +30,8 @@ pub trait Float:
     const PI: Self;
     /// The difference between 1 and the next larger number.
     const EPSILON: Self;
+    /// The largest finite number.
+    const MAX: Self;
 
     /// Converts from `f64`, exactly.
     fn of(value: f64) -> Self;
@@ -61,6 +63,15 @@ pub trait Float:
     fn exp(self) -> Self;
     /// Returns the natural logarithm of a nonnegative number. The logarithm of 0 is negative infinity.
     fn ln(self) -> Self;
+    /// Returns e raised to two powers, the second of which is not smaller. The second result may be somewhat too large.
+    fn exps(low: Self, high: Self) -> (Self, Self) {
+        (low.exp(), high.exp())
+    }
+    /// Returns the natural logarithms of two nonnegative numbers, the second of which is not smaller. The second result
+    /// may be somewhat too large.
+    fn lns(low: Self, high: Self) -> (Self, Self) {
+        (low.ln(), high.ln())
+    }
     /// Returns the angle in radians, from -π to π, from the positive x axis to the point with this y.
     fn atan2(self, x: Self) -> Self;
     /// Returns the largest integer that is at most the number.
@@ -102,6 +113,7 @@ impl Float for f64 {
     const INFINITY: Self = f64::INFINITY;
     const PI: Self = std::f64::consts::PI;
     const EPSILON: Self = f64::EPSILON;
+    const MAX: Self = f64::MAX;
 
     #[inline(always)]
     fn of(value: f64) -> Self {
@@ -213,6 +225,7 @@ impl Float for f256 {
     const INFINITY: Self = f256::INFINITY;
     const PI: Self = ::f256::consts::PI;
     const EPSILON: Self = f256::EPSILON;
+    const MAX: Self = f256::MAX;
 
     fn of(value: f64) -> Self {
         Self::from(value)
@@ -291,6 +304,35 @@ impl Float for f256 {
         if self.eq_zero() { f256::NEG_INFINITY } else { f256::ln(&self) }
     }
 
+    /// Of numbers that are near each other, the second power follows from the first: `e^d` is less than `1 + d + d^2` for
+    /// small d. Four ulps cover the rounding.
+    fn exps(low: Self, high: Self) -> (Self, Self) {
+        let (below, apart) = (low.exp(), high - low);
+        match apart {
+            _ if apart.eq_zero() => (below, below),
+            _ if apart <= Self::from(NEAR) => {
+                let four = Self::from(4.0) * Self::EPSILON;
+                (below, below * (Self::ONE + apart + apart * apart + four))
+            }
+            _ => (below, high.exp()),
+        }
+    }
+
+    /// Of numbers that are near each other, the second logarithm follows from the first: that of `1 + d` is less than d.
+    /// Sixteen ulps cover the rounding.
+    fn lns(low: Self, high: Self) -> (Self, Self) {
+        let (below, apart) = (low.ln(), high - low);
+        match apart {
+            _ if apart.eq_zero() => (below, below),
+            _ if apart <= Self::from(NEAR) * low => {
+                let above = apart / low;
+                let rounding = Self::from(16.0) * Self::EPSILON * (below.abs() + above);
+                (below, below + above + rounding)
+            }
+            _ => (below, high.ln()),
+        }
+    }
+
     fn atan2(self, x: Self) -> Self {
         // The crate's angles are wrong if an argument is infinite, if both are equally large, and for -0.
         let part = |of: Self| match of.is_infinite() {
@@ -325,6 +367,10 @@ impl Float for f256 {
         f256::is_nan(self)
     }
 }
+
+/// How near two numbers are whose powers and logarithms follow from each other: their difference, or the ratio of that to
+/// the numbers.
+const NEAR: f64 = 1.0 / (1_u64 << 32) as f64;
 
 /// Angles up to this are their own sines and tangents, to within an ulp.
 const SMALL: f64 = 1.0 / (1_u128 << 119) as f64;

@@ -214,6 +214,7 @@ impl Float for Fraction {
     // Rounding changes pi by at most half of the last bit.
     const PI: Self = Self { error: f256::EPSILON, ..Self::whole(::f256::consts::PI) };
     const EPSILON: Self = Self::whole(f256::EPSILON);
+    const MAX: Self = Self::whole(f256::MAX);
 
     fn of(value: f64) -> Self {
         Self::whole(value.into())

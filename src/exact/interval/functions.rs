@@ -168,14 +168,17 @@ impl<F: Float> Scalar for Interval<F> {
     }
 
     fn exp(self) -> Self {
-        let Self { low, high } = Self::around(self.low.exp(), self.high.exp());
+        let (low, high) = F::exps(self.low, self.high);
+        // A power that overflows is a finite number all the same.
+        let Self { low, high } = Self::around(low.min(F::MAX), high);
         Self { low: low.max(F::of(0.0)), high }
     }
 
     fn ln(self) -> Self {
         let zero = F::of(0.0);
         if self.low > zero {
-            Self::around(self.low.ln(), self.high.ln())
+            let (low, high) = F::lns(self.low, self.high);
+            Self::around(low, high)
         } else if self.low == zero && self.high > zero {
             Self { low: -F::INFINITY, ..Self::around(zero, self.high.ln()) }
         } else {

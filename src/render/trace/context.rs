@@ -12,6 +12,7 @@ use crate::observer::TraceObserver;
 use crate::plan::Plan;
 use crate::tiles::TOGETHER;
 use f256::f256;
+use glam::DVec3;
 use tabray_world::accuracy::Accuracy;
 use tabray_world::certify::Doubt;
 use tabray_world::coincidence;
@@ -147,12 +148,13 @@ pub(super) struct UndecidedRay {
 }
 
 /// A pixel whose ray may hit an object.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct UndecidedPixel {
     pub number: u32,
     /// The object's index.
     pub object: usize,
     pub doubt: Doubt,
+    /// Where the ray may hit it.
+    pub at: DVec3,
 }
 
 /// The scratch space of primary rays.

@@ -227,7 +227,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 && (hits.hit_ids[lane] == object as u64 + 1 || in_world_units(from, &sight) <= hits.far[lane])
             {
                 let (number, doubt) = (self.pixel_of(lane), Doubt::of(proven, &sight, from));
-                self.scratch.undecided.pixels.push(UndecidedPixel { number, object, doubt });
+                let at = sight.line::<f64>().at(from.to_f64()).into();
+                self.scratch.undecided.pixels.push(UndecidedPixel { number, object, doubt, at });
             }
         }
     }
@@ -245,10 +246,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     #[cold]
     pub(super) fn report_undecided(&mut self) {
         let mut pixels = take(&mut self.scratch.undecided.pixels);
-        pixels.sort_unstable();
+        pixels.sort_by(|one, other| {
+            let key = |of: &UndecidedPixel| (of.number, of.object);
+            key(one).cmp(&key(other)).then_with(|| one.doubt.cmp(&other.doubt))
+        });
         pixels.dedup_by_key(|pixel| pixel.number);
-        for UndecidedPixel { object, doubt, .. } in pixels {
-            self.observer.count(Count::Undecided(object, doubt));
+        for UndecidedPixel { object, doubt, at, .. } in pixels {
+            self.observer.count(Count::Undecided(object, doubt, at));
         }
     }
 }

@@ -48,6 +48,12 @@ pub trait Implicit: Send + Sync {
         N::constant(1.0)
     }
 
+    /// Returns a number that is negative where a condition of the scene cuts the surface off, although its formula is
+    /// defined there. It is part of [`inside_trim`](Self::inside_trim).
+    fn condition<N: Scalar>(&self, _at: [N; 3]) -> N {
+        N::constant(1.0)
+    }
+
     /// Returns the reason why the surface is not closed, or `None` for a closed surface within its box.
     fn why_not_closed(&self) -> Option<&'static str> {
         Some("it has no inside")

@@ -1,7 +1,7 @@
 //! Proofs of the hits of a parametric surface.
 
 use super::patch::{Patches, PatchesIn, Rectangle};
-use super::search::{Found, Search, meet};
+use super::search::{Found, Hit, Search, meet};
 use super::shape::ParametricShape;
 use super::tree::halves;
 use f256::f256;
@@ -40,6 +40,9 @@ impl ParametricShape {
         };
         match (Search { shape: self, line, is_left_out: &is_left_out }).first() {
             Found { hit: None, undecided: None, .. } => (HitEnclosure::Misses, 0),
+            Found { hit: Some(hit), .. } if !self.is_on(line, &hit) => {
+                (HitEnclosure::Doubtful(F::of(0.0)), 0)
+            }
             Found { hit: Some(hit), undecided, .. } if undecided.is_none_or(|from| from > hit.t.high) => {
                 let at = if hit.is_edge { HitEnclosure::Edge(hit.t) } else { HitEnclosure::Hits(hit.t) };
                 (at, hit.leaf)
@@ -49,6 +52,21 @@ impl ParametricShape {
                 (HitEnclosure::Doubtful(hit.map_or(from, |hit| from.min(hit.t.low))), 0)
             }
         }
+    }
+
+    /// Tells whether the line may be on the surface at a hit: the second opinion on its proof, by the formulas as they
+    /// were written.
+    fn is_on<F: Float>(&self, line: &Line<Interval<F>>, hit: &Hit<F>) -> bool
+    where
+        dyn Patches: PatchesIn<F>,
+    {
+        let (Some(surface), at) = (self.patches.as_written(&hit.place), line.at(hit.t)) else { return false };
+        (0..3).all(|axis| {
+            let off = surface[axis] - at[axis];
+            // False for NaN.
+            let is_off = off.low > F::of(0.0) || off.high < F::of(0.0);
+            !is_off
+        })
     }
 
     /// Encloses the normals, of any length, at those points of a leaf and its margin that are in a box. Returns `None`
@@ -169,5 +187,48 @@ impl HitQueries for ParametricShape {
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
         Some(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parametric::Parametric;
+    use crate::parametric::tree::Tree;
+    use tabray_exact::scalar::{Scalar, constants};
+
+    /// A square of which the formulas that are proven are off by so much from those that were written.
+    struct Square(f64);
+
+    impl Parametric for Square {
+        fn point<N: Scalar>(&self, [u, v]: [N; 2]) -> [N; 3] {
+            [u, v, N::constant(0.25) * u * v]
+        }
+
+        fn as_written<F: Float>(&self, uv: [Interval<F>; 2]) -> Option<[Interval<F>; 3]> {
+            let [x, y, z] = self.point(uv);
+            Some([x, y + Interval::constant(self.0), z])
+        }
+
+        fn ends(&self) -> [[f64; 2]; 2] {
+            [[-1.0, 1.0]; 2]
+        }
+    }
+
+    #[test]
+    fn a_hit_off_the_surface_as_it_was_written_is_open() {
+        for (off, is_open) in [(0.0, false), (1e-9, true)] {
+            let patches: Box<dyn Patches> = Box::new(Square(off));
+            let tree = Tree::new(&*patches, Square(off).ends());
+            let bounds = tree.bounds().expect("a box");
+            let shape = ParametricShape { patches, tree, bounds };
+            for [x, y] in [[0.3, 0.4], [-0.71, 0.123], [0.5, -0.2]] {
+                let dir = constants(DVec3::new(0.1, -0.05, -1.0));
+                let line = Line { origin: constants(DVec3::new(x, y, 3.0)), dir };
+                let (found, _) = shape.proven_hit::<f64>(&line, false);
+                assert_eq!(matches!(found, HitEnclosure::Doubtful(_)), is_open, "{found:?}");
+                assert_eq!(matches!(found, HitEnclosure::Hits(_)), !is_open, "{found:?}");
+            }
+        }
     }
 }

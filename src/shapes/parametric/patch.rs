@@ -11,6 +11,12 @@ pub trait Parametric: Send + Sync {
     /// Returns the point at u and v, in world coordinates.
     fn point<N: Scalar>(&self, uv: [N; 2]) -> [N; 3];
 
+    /// Encloses the points of a rectangle of u and v, by the formulas as they were written, with which a hit is checked;
+    /// `None` where one of them is certainly not defined. By default, these are what [`point`](Self::point) evaluates.
+    fn as_written<F: Float>(&self, uv: [Interval<F>; 2]) -> Option<[Interval<F>; 3]> {
+        Some(self.point(uv))
+    }
+
     /// Returns the minimum and the maximum of u and of v.
     fn ends(&self) -> [[f64; 2]; 2];
 }
@@ -31,6 +37,9 @@ pub(super) trait PatchesIn<F: Float> {
 
     /// Encloses the points of a part, without derivatives.
     fn points(&self, part: &Rectangle<F>) -> [Interval<F>; 3];
+
+    /// Encloses them as [`Parametric::as_written`] does.
+    fn as_written(&self, part: &Rectangle<F>) -> Option<[Interval<F>; 3]>;
 }
 
 impl<T: Parametric, F: Float> PatchesIn<F> for T {
@@ -46,6 +55,10 @@ impl<T: Parametric, F: Float> PatchesIn<F> for T {
 
     fn points(&self, part: &Rectangle<F>) -> [Interval<F>; 3] {
         self.point(*part)
+    }
+
+    fn as_written(&self, part: &Rectangle<F>) -> Option<[Interval<F>; 3]> {
+        Parametric::as_written(self, *part)
     }
 }
 

@@ -97,12 +97,13 @@ impl Placed {
         (dir < MAX_DRIFT && own.origin < MISS).then_some(own)
     }
 
-    /// Returns a range in object space. `length` is the length of a world unit along the ray there.
+    /// Returns a range in object space, which includes all that rounding may have moved out of it. `length` is the
+    /// length of a world unit along the ray there.
     #[inline(always)]
     fn object_range(&self, ray: &Ray, range: &RayRange, length: f64) -> RayRange {
         let RayRange { near, far, origin_side, origin_error } = *range;
         RayRange {
-            near: near * length,
+            near: near * length * (1.0 - 4.0 * f64::EPSILON),
             far: far * length * (1.0 + CLOSE),
             origin_side,
             origin_error: self.object_error(ray.origin, origin_error),
@@ -144,6 +145,9 @@ impl Placed {
             object_range.origin_error = 0.0;
         }
         let bracket = self.body.shape.packets().t_bounds(&RayBall { ray: own, drift }, &object_range);
+        if bracket.near == bracket.far && bracket.near / length <= range.near {
+            return Bracket::UNKNOWN;
+        }
         let bracket = in_world(bracket, length, drift.dir, ray, range);
         let bracket = self.max_z.kept_bracket(ray, bracket, range.origin_error);
         if is_from_camera && ray.is_single() {
@@ -207,8 +211,16 @@ pub(super) fn entered(bracket: Bracket, entry: impl FnOnce() -> Option<f64>) -> 
 impl Hittable for Placed {
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let (own, length) = self.object_ray(ray);
-        let range_there = self.object_range(ray, range, length);
-        let distance = range.keep(self.body.shape.distance(&own, &range_there) / length);
+        let mut range_there = self.object_range(ray, range, length);
+        let distance = loop {
+            let found = self.body.shape.distance(&own, &range_there);
+            let distance = found / length;
+            // A hit where the range begins may be before it in world units, and then another one is the first.
+            if distance > range.near || distance.is_nan() {
+                break range.keep(distance);
+            }
+            range_there.near = found;
+        };
         if self.max_z.cuts_off(ray, distance) { MISS } else { distance }
     }
 

@@ -1,6 +1,7 @@
 //! The course notes' method for surfaces of revolution, which loses some hits.
 
 use glam::DVec3;
+use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Interval;
 use tabray_exact::roots::bisection::bisect;
 use tabray_exact::scalar::Scalar;
@@ -48,6 +49,10 @@ impl ClassicRevolution {
 impl Equation for ClassicRevolution {
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)
+    }
+
+    fn obstacle(&self, [_, y, _]: [Interval; 3]) -> Option<Obstacle> {
+        Some(self.line.radius.obstacle(&[y]))
     }
 
     fn cost(&self) -> usize {

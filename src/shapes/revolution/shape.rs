@@ -7,6 +7,7 @@ use super::normal;
 use super::surface::Revolution;
 use crate::uv;
 use glam::{DVec2, DVec3};
+use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Interval;
 use tabray_exact::roots::Method;
 use tabray_exact::scalar::Scalar;
@@ -39,6 +40,10 @@ impl<S: Equation> Equation for InFrame<S> {
 
     fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
         self.surface.uv_bounds(at)
+    }
+
+    fn obstacle(&self, at: [Interval; 3]) -> Option<Obstacle> {
+        self.surface.obstacle(at)
     }
 
     fn cost(&self) -> usize {

@@ -6,6 +6,7 @@ use crate::uv;
 use glam::DVec3;
 use std::fmt;
 use tabray_exact::formula::Formula;
+use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 use tabray_world::certify::Equation;
@@ -108,6 +109,11 @@ impl Equation for Revolution {
 
     fn uv_bounds(&self, at: [Interval; 3]) -> Option<[Interval; 2]> {
         Some(uv::bounds_on_height(at, self.height))
+    }
+
+    fn obstacle(&self, [_, y, _]: [Interval; 3]) -> Option<Obstacle> {
+        let height = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
+        Some(self.profile.obstacle(&[height]))
     }
 
     fn cost(&self) -> usize {

@@ -9,7 +9,7 @@ use tabray_exact::formula::Formula;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::Scalar;
 use tabray_world::geometry::frame::Frame;
-use tabray_world::geometry::ray::Ray;
+use tabray_world::geometry::ray::{Ray, RayRange};
 
 fn formula(profile: &str) -> Formula {
     Formula::parse(profile).unwrap_or_else(|fault| panic!("{profile}: {fault:?}"))
@@ -185,7 +185,7 @@ fn runs_contain_their_slabs() {
 /// Without a limit for all slabs together, one ray took minutes.
 #[test]
 fn a_search_ends_however_many_slabs_have_no_good_bounds() {
-    let profile = "0.3 + abs(min(y, exp(sqrt(9.6^7 - y^3))))";
+    let profile = "0.3 + abs(min(y, sqrt(2*exp(sqrt(9.6^7 - y^3)))))";
     let surface = surface(profile, 15.0).expect("a surface");
     assert!(surface.may_be_costly() && surface.slabs.count() > 1000);
     let frame = Frame::around(DVec3::ZERO, DVec3::Y);
@@ -199,6 +199,32 @@ fn a_search_ends_however_many_slabs_have_no_good_bounds() {
 
 /// The bounds of far rays are as wide at a jump as on a piece around it. Further halving would take thousands of
 /// pieces, and the last slabs would not be searched at all.
+#[test]
+fn a_ray_along_the_axis_hits_the_tip_from_both_sides() {
+    for (profile, height, tip) in [
+        ("1 - y", 2.0, 1.0),
+        ("1 - y^2", 1.5, 1.0),
+        ("sin(3*y)", 2.0, std::f64::consts::FRAC_PI_3),
+        ("y - 0.5", 1.0, 0.5),
+    ] {
+        let surface = surface(profile, height).unwrap_or_else(|fault| panic!("{profile}: {fault:?}"));
+        for axis in [DVec3::Y, DVec3::Z, DVec3::NEG_X] {
+            let frame = Frame::around(DVec3::new(0.25, -0.5, 2.0), axis);
+            for start in [0.1, 0.9, tip - 0.25, tip + 0.25, -2.0, 4.0] {
+                // The sine begins with a tip, too.
+                if start < 0.0 && profile.starts_with("sin") {
+                    continue;
+                }
+                let dir = if start < tip { axis } else { -axis };
+                let ray = Ray { origin: frame.origin + start * axis, dir };
+                let found = surface.first_hit(&frame, &ray, &RayRange::ALL).0;
+                let away = (start - tip).abs();
+                assert!((found - away).abs() < 1e-12, "{profile} from {start}: {found} for {away}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_jump_takes_few_pieces_however_far_a_ray_comes_from() {
     let surface = surface("0.001*(0.5 + 0.25*floor(y/0.001))", 0.00628).expect("a surface");

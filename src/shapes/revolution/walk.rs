@@ -169,6 +169,11 @@ impl Revolution {
                 // Where the surface narrows to the axis, rounding may decide on which side of its end a ray is.
                 let margin = self.slabs.coarsest() + lanes.rounding[0];
                 is_certain &= lanes.around(0).at(from) > margin && lanes.around(0).at(to) > margin;
+                // Through the tip, where no crossing is told from a touch, a ray along the axis leaves the inside.
+                let is_on_axis = lanes.around(0).at(from) <= lanes.rounding[0];
+                if lanes.side[0] < 0.0 && from < to && is_on_axis {
+                    return (local.base + from, false);
+                }
                 wanted = None;
             }
             cross(cpu, &mut lanes, &slab, size, 0.0, 1);

@@ -6,6 +6,7 @@ use crate::threads::renderer_with;
 use glam::DVec3;
 use std::ops::Range;
 use survey::Survey;
+use tabray_core::exact::interval::Interval;
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
@@ -24,6 +25,9 @@ use tabray_core::world::sensor::Sensor;
 
 /// The maximum number of columns and rows of pixels that are looked at.
 const GRID: [usize; 2] = [40, 30];
+
+/// The same, where none of these shows an object although objects may fill the image.
+const FINE_GRID: [usize; 2] = [80, 60];
 
 /// The level that a cure aims at.
 const GOOD: f64 = 128.0;
@@ -68,9 +72,9 @@ fn remark_on(image: &str, plan: &Plan, part: [&Range<usize>; 2], levels: &Levels
     if levels.pixels == 0 || plan.model.objects.is_empty() {
         return None;
     }
-    let places = places(&plan.camera, part);
-    empty(plan, &places).or_else(|| {
-        let is_black = levels.brightest < DARK;
+    let places = places(&plan.camera, part, GRID);
+    let is_black = levels.brightest < DARK;
+    empty(plan, &places, is_black).or_else(|| {
         if !is_black && !is_burnt(levels) {
             return flat(plan.model).or_else(|| unlit(plan.model, &places, levels));
         }
@@ -144,7 +148,7 @@ fn tried_here(model: &Model) -> Option<Remark> {
     let mut plan = Plan::new(model);
     plan.set_adaptive(None);
     plan.camera.samples = 1;
-    let places = places(&plan.camera, part);
+    let places = places(&plan.camera, part, GRID);
     let levels = |plan: &Plan, places: &[[usize; 2]]| {
         let (mut scratch, mut nobody, mut levels) = (Scratch::default(), Flaws::default(), Levels::default());
         let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
@@ -164,18 +168,18 @@ fn tried_here(model: &Model) -> Option<Remark> {
 }
 
 /// Returns pixels spread over a part of an image, by column and row from the bottom.
-fn places(camera: &Sensor, [columns, rows]: [&Range<usize>; 2]) -> Vec<[usize; 2]> {
+fn places(camera: &Sensor, [columns, rows]: [&Range<usize>; 2], grid: [usize; 2]) -> Vec<[usize; 2]> {
     let spread = |range: &Range<usize>, most: usize| -> Vec<usize> {
         let count = range.len().min(most);
         (0..count).map(|index| range.start + index * (range.len() - 1) / (count - 1).max(1)).collect()
     };
-    let columns = spread(columns, GRID[0]);
-    let rows = spread(rows, GRID[1]).into_iter().map(|row| camera.pixels[1] - 1 - row);
+    let columns = spread(columns, grid[0]);
+    let rows = spread(rows, grid[1]).into_iter().map(|row| camera.pixels[1] - 1 - row);
     rows.flat_map(|row| columns.iter().map(move |column| [*column, row])).collect()
 }
 
 /// Says that no object is in view, if none is.
-fn empty(plan: &Plan, places: &[[usize; 2]]) -> Option<Remark> {
+fn empty(plan: &Plan, places: &[[usize; 2]], is_black: bool) -> Option<Remark> {
     let (model, camera) = (plan.model, &plan.camera);
     let is_hit = |[x, y]: &[usize; 2]| trace::first_hit(plan, &camera.sight(*x as f64, *y as f64)).is_some();
     // From the middle on, where objects usually are.
@@ -189,11 +193,27 @@ fn empty(plan: &Plan, places: &[[usize; 2]]) -> Option<Remark> {
         let Projected::At(at) = camera.project(point) else { return false };
         (0..2).all(|side| (-0.5..camera.pixels[side] as f64 - 0.5).contains(&at[side]))
     };
+    let all = bounds.iter().copied().reduce(|one, other| one.and(&other));
     if bounds.iter().any(is_shown) {
-        return None;
+        let all = all?;
+        // What is smaller than the distance of the pixels may be missed, but not what fills the image.
+        let is_before = |[x, y]: &&[usize; 2]| {
+            camera.sight(*x as f64, *y as f64).line::<Interval>().clip(all.low, all.high).is_some()
+        };
+        let fills = !is_black && 2 * places.iter().filter(is_before).count() > places.len();
+        let many = self::places(camera, [&(0..camera.pixels[0]), &(0..camera.pixels[1])], FINE_GRID);
+        if !fills || many.iter().any(is_hit) {
+            return None;
+        }
+        let help = format!(
+            "no ray to {} pixels hits what may lie between {} and {}: a formula may be 0 nowhere there",
+            many.len(),
+            place(all.low),
+            place(all.high)
+        );
+        return Some(Remark { message: "no object is in view".to_owned(), help });
     }
     let viewer = camera.origins().middle;
-    let all = bounds.iter().copied().reduce(|one, other| one.and(&other));
     let help = match all {
         None => format!("the viewer at {} looks past them", place(viewer)),
         Some(Aabb { low, high }) => {

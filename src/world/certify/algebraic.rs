@@ -1,7 +1,7 @@
 //! First hits of a surface whose equation is a polynomial, found from its coefficients along the line, rounded or
 //! exact.
 
-use super::check;
+use super::check::{self, Trail};
 use super::equation::{Equation, HitEnclosure, Values, hit_at, is_kept, may_be_hit};
 use crate::geometry::sight::{Line, Sight};
 use f256::f256;
@@ -33,12 +33,12 @@ pub(super) fn first_hit<C: Coefficient>(
     line: &Line<Interval<C::End>>,
     leaves: bool,
 ) -> Option<HitEnclosure<C::End>> {
-    let (line, mut places, mut first) = (shape.to_local(*line), Vec::new(), HitEnclosure::Misses);
-    visit_hits(shape, &line, leaves, &mut places, |hit| {
+    let (line, mut trail, mut first) = (shape.to_local(*line), Trail::default(), HitEnclosure::Misses);
+    visit_hits(shape, &line, leaves, &mut trail, |hit| {
         first = hit;
         true
     })?;
-    let first = check::first(shape, &line, first, &places);
+    let first = check::first(shape, &line, first, &trail);
     (!(leaves && matches!(first, HitEnclosure::Doubtful(_)))).then_some(first)
 }
 
@@ -48,27 +48,29 @@ pub(super) fn all_hits<C: Coefficient>(
     line: &Line<Interval<C::End>>,
     leaves: bool,
 ) -> Option<Vec<HitEnclosure<C::End>>> {
-    let (line, mut places, mut all) = (shape.to_local(*line), Vec::new(), Vec::new());
-    visit_hits(shape, &line, leaves, &mut places, |hit| {
+    let (line, mut trail, mut all) = (shape.to_local(*line), Trail::default(), Vec::new());
+    visit_hits(shape, &line, leaves, &mut trail, |hit| {
         all.push(hit);
         !matches!(hit, HitEnclosure::Hits(_))
     })?;
-    let all = check::all(shape, &line, all, &places);
+    let all = check::all(shape, &line, all, &trail);
     (!(leaves && matches!(all[..], [HitEnclosure::Doubtful(_), ..]))).then_some(all)
 }
 
 /// Visits the hits with t > 0 of a line in the equation's coordinates, in order, until the visitor returns true; `None`
-/// where the equation is no polynomial. Adds the ends of the pieces that have no root.
+/// where the equation is no polynomial. Notes the ends of the pieces that have no root.
 fn visit_hits<C: Coefficient>(
     shape: &dyn Coefficients<C>,
     line: &Line<Interval<C::End>>,
     leaves: bool,
-    places: &mut Vec<f64>,
+    trail: &mut Trail,
     mut visit: impl FnMut(HitEnclosure<C::End>) -> bool,
 ) -> Option<()> {
     let zero = C::End::of(0.0);
     let [low, high] = shape.extent();
-    let Some((mut from, to)) = line.clip(low, high) else { return Some(()) };
+    let part = line.clip(low, high);
+    trail.clip(part);
+    let Some((mut from, to)) = part else { return Some(()) };
     if !to.is_finite() {
         return None;
     }
@@ -99,7 +101,7 @@ fn visit_hits<C: Coefficient>(
     let (near_base, near_half) = (base.low.to_f64(), half.to_f64());
     let mut hit = |part: RootPart<C>| match part {
         RootPart::Free([low, _]) => {
-            places.push(near_base + near_half * low.nearest());
+            trail.places.push(near_base + near_half * low.nearest());
             None
         }
         RootPart::Root { ends, rises } => {
@@ -140,8 +142,12 @@ fn exactly_along(shape: &dyn Values<Wide>, field: &Field, line: &Line<Fine>) -> 
         None => None,
     };
     let near = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
-    let [low, high] = shape.extent();
-    let Some((from, to)) = near.clip(low, high) else { return Some(HitEnclosure::Misses) };
+    let [low, high] = Values::<Wide>::extent(shape);
+    let (part, mut trail) = (near.clip(low, high), Trail::default());
+    trail.clip(part);
+    let Some((from, to)) = part else {
+        return Some(check::first(shape, &near, HitEnclosure::Misses, &trail));
+    };
     let [from, to] = [from.to_f64().next_down().max(0.0), to.to_f64().next_up()];
     if !to.is_finite() {
         return None;
@@ -158,7 +164,7 @@ fn exactly_along(shape: &dyn Values<Wide>, field: &Field, line: &Line<Fine>) -> 
         Some(at) if is_hit(at).is_some() => HitEnclosure::Hits(at),
         Some(at) => HitEnclosure::Edge(at),
     };
-    Some(check::first(shape, &near, found, &[]))
+    Some(check::first(shape, &near, found, &trail))
 }
 
 /// Returns the start and the direction of a line, if its numbers are exact.

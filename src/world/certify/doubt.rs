@@ -18,9 +18,9 @@ pub enum Doubt {
     Touched,
     /// The formula may not be defined there, by this operation.
     Undefined(Arc<str>),
-    /// The equation jumps, as a profile may, or a formula by this operation.
+    /// The equation jumps; in a formula, by this operation.
     Jumps(Option<Arc<str>>),
-    /// The formula is continuous there, but its slope has no bound.
+    /// The equation does not jump there, but its slope has no bound.
     Steep,
     /// The ray does not touch the surface, and the equation does not jump: the search needs more digits or more steps.
     /// What the ray comes to next is where this operation of the formula is not defined, or jumps.
@@ -54,6 +54,10 @@ impl fmt::Display for Doubt {
 const TOUCH: f64 = 1e-30;
 const JUMP: f64 = 128.0 * f64::EPSILON;
 
+/// The number of halvings of a place in which the value may jump, each of which keeps the half with the larger change.
+/// The change of a continuous value soon falls below half of the first.
+const HALVINGS: usize = 24;
+
 /// How much wider the next place is where an obstacle is looked for.
 const WIDENING: f64 = 16.0;
 
@@ -84,12 +88,19 @@ impl Doubt {
             HitProofs::<f256>::obstacle(shape, line.at(place), 0)
         };
         match within(JUMP) {
-            (true, slope) if !slope.is_bounded() => match obstacle(JUMP) {
-                Some(Obstacle::Undefined(operation)) => Self::Undefined(shortened(&operation)),
-                Some(Obstacle::Jump(operation)) => Self::Jumps(Some(shortened(&operation))),
-                Some(Obstacle::Slope) => Self::Steep,
-                None => Self::Jumps(None),
-            },
+            (true, slope) if !slope.is_bounded() => {
+                let value = |at: f256| {
+                    let at = line.along(Dual::variable(Wide::point(at)));
+                    HitProofs::<f256>::slope(shape, at, 0).value.middle()
+                };
+                let jumps = || jumps(value, from, from * (f256::ONE + f256::from(JUMP)));
+                match obstacle(JUMP) {
+                    Some(Obstacle::Undefined(operation)) => Self::Undefined(shortened(&operation)),
+                    Some(Obstacle::Jump(operation)) if jumps() => Self::Jumps(Some(shortened(&operation))),
+                    None if jumps() => Self::Jumps(None),
+                    _ => Self::Steep,
+                }
+            }
             _ => {
                 let widths = successors(Some(JUMP), |width| Some(width * WIDENING));
                 let near = widths.take_while(|width| *width < 1.0).find_map(|width| match obstacle(width) {
@@ -100,6 +111,31 @@ impl Doubt {
             }
         }
     }
+}
+
+/// Tells whether a value changes between two places however near they are.
+fn jumps(value: impl Fn(f256) -> f256, mut low: f256, mut high: f256) -> bool {
+    let change = |one: f256, other: f256| (other - one).abs();
+    let (mut below, mut above) = (value(low), value(high));
+    let mut largest = change(below, above);
+    for _ in 0..HALVINGS {
+        let middle = f256::from(0.5) * (low + high);
+        let at = value(middle);
+        let (one, other) = (change(below, at), change(at, above));
+        if one > other {
+            (high, above) = (middle, at);
+        } else {
+            (low, below) = (middle, at);
+        }
+        let most = one.max(other);
+        largest = largest.max(most);
+        // False for NaN.
+        let is_large = most > f256::from(0.5) * largest;
+        if !is_large {
+            return false;
+        }
+    }
+    true
 }
 
 /// Returns the text of an operation, without what is beyond [`MAX_LETTERS`].
@@ -122,6 +158,7 @@ mod tests {
     enum Case {
         Squared,
         Step,
+        Root,
     }
 
     impl Equation for Case {
@@ -130,6 +167,7 @@ mod tests {
             match self {
                 Self::Squared => third.powi(2) * (x + N::constant(7.0)),
                 Self::Step => third.floor() + N::constant(0.5),
+                Self::Root => third.abs().sqrt(),
             }
         }
 
@@ -142,7 +180,9 @@ mod tests {
     fn what_is_touched_and_what_jumps_are_told_apart() {
         let toward = DVec2::new(0.3, 0.4);
         let sight = Sight::through(DVec3::new(0.5, 0.5, 3.0), toward, DVec2::ONE, DVec2::ONE);
-        for (case, doubt) in [(Case::Squared, Doubt::Touched), (Case::Step, Doubt::Jumps(None))] {
+        for (case, doubt) in
+            [(Case::Squared, Doubt::Touched), (Case::Step, Doubt::Jumps(None)), (Case::Root, Doubt::Steep)]
+        {
             let Enclosure::Doubtful(from) = first_hit(&case, &sight, Precision::Octuple) else {
                 panic!("237 bits do not decide it")
             };

@@ -105,7 +105,7 @@ impl<E: Equation, F: Precise> HitProofs<F> for E {
     }
 
     fn obstacle(&self, at: [Interval<F>; 3], _part: usize) -> Option<Obstacle> {
-        Some(self.field()?.obstacle(&own_box(self, at)))
+        Equation::obstacle(self, own_box(self, at))
     }
 
     fn uv_bounds(&self, at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {

@@ -4,7 +4,7 @@ mod judgement;
 #[cfg(test)]
 mod tests;
 
-use super::check;
+use super::check::{self, Trail};
 use super::equation::{HitEnclosure, Values, hit_at, may_be_hit};
 use crate::geometry::sight::Line;
 use f256::f256;
@@ -50,9 +50,9 @@ pub fn first_hit<F: Float>(
     leaves: bool,
     mut pieces: usize,
 ) -> HitEnclosure<F> {
-    let mut places = Vec::new();
-    let found = unchecked(shape, line, leaves, &mut pieces, Stretch::From(F::of(0.0)), &mut places).0;
-    check::first(shape, line, found, &places)
+    let mut trail = Trail::default();
+    let found = unchecked(shape, line, leaves, &mut pieces, Stretch::From(F::of(0.0)), &mut trail).0;
+    check::first(shape, line, found, &trail)
 }
 
 /// Finds the first hit with t > 0 in 237 bits. Only what 53 bits leave open is examined with 237, and from there on,
@@ -65,20 +65,21 @@ pub fn first_hit_in_turns(
     [mut pieces, mut fine_pieces]: [usize; 2],
 ) -> HitEnclosure<f256> {
     let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
-    let (mut places, mut from, mut width) = (Vec::new(), 0.0, DOUBTFUL);
+    let (mut trail, mut from, mut width, mut is_spent) = (Trail::default(), 0.0, DOUBTFUL, false);
     let found = loop {
         let stretch = Stretch::From(from);
-        let (found, end) = unchecked(rough, &coarse, leaves, &mut pieces, stretch, &mut places);
+        let (found, end) = unchecked(rough, &coarse, leaves, &mut pieces, stretch, &mut trail);
         let Some(at) = first_possible(found) else { break HitEnclosure::Misses };
-        if pieces == 0 {
+        if let (0, false, Some(end), Some([start, to])) = (pieces, is_spent, end, trail.clipped) {
             // What is too much for 53 bits although pieces are far longer than their rounding is so for 237, too.
-            if end.is_some_and(|end| end - at.low > ROUNDED * end) {
+            if end - at.low > ROUNDED * end {
                 break HitEnclosure::Doubtful(at.low.into());
             }
-            width = 1.0;
+            // From here on, 53 bits examine nothing: 237 begin with pieces of the same length.
+            (is_spent, width) = (true, WIDENING * (end - at.low) / (to - start));
         }
         let near = Stretch::Near(at.into(), width);
-        let (found, rest) = unchecked(shape, line, leaves, &mut fine_pieces, near, &mut places);
+        let (found, rest) = unchecked(shape, line, leaves, &mut fine_pieces, near, &mut trail);
         let (HitEnclosure::Misses, Some(rest)) = (found, rest) else { break found };
         let next = rest.to_f64().next_down();
         if next <= from {
@@ -86,8 +87,8 @@ pub fn first_hit_in_turns(
         }
         (from, width) = (next, WIDENING * width);
     };
-    places.sort_by(f64::total_cmp);
-    check::first(shape, line, found, &places)
+    trail.places.sort_by(f64::total_cmp);
+    check::first(shape, line, found, &trail)
 }
 
 /// The part of a line in which a hit is searched.
@@ -98,7 +99,7 @@ enum Stretch<F> {
     Near(Interval<F>, f64),
 }
 
-/// Finds the first hit in a stretch, and adds the ends of the pieces that have none. Also returns the place from which
+/// Finds the first hit in a stretch, and notes the ends of the pieces that have none. Also returns the place from which
 /// on nothing was examined, if there is one, or the end of the piece at which the search was given up.
 fn unchecked<F: Float>(
     shape: &dyn Values<Interval<F>>,
@@ -106,10 +107,12 @@ fn unchecked<F: Float>(
     leaves: bool,
     pieces: &mut usize,
     stretch: Stretch<F>,
-    places: &mut Vec<f64>,
+    trail: &mut Trail,
 ) -> (HitEnclosure<F>, Option<F>) {
     let zero = F::of(0.0);
-    let Some((mut from, mut to)) = clipped(shape, line) else { return (HitEnclosure::Misses, None) };
+    let part = clipped(shape, line);
+    trail.clip(part);
+    let Some((mut from, mut to)) = part else { return (HitEnclosure::Misses, None) };
     let length = to - from;
     from = from.max(match &stretch {
         Stretch::From(place) => *place,
@@ -148,7 +151,7 @@ fn unchecked<F: Float>(
         *pieces = FEW_PIECES.min(*pieces);
     }
     let ends = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
-    let (found, end) = search_pieces(shape, &near, ends, length, base, pieces, places);
+    let (found, end) = search_pieces(shape, &near, ends, length, base, pieces, &mut trail.places);
     (found, end.or(rest))
 }
 

@@ -156,8 +156,11 @@ impl<F: Float> Seen<F> {
     }
 
     fn over(self, b: Self) -> Self {
+        let zero = F::of(0.0);
         let values = if b.has(0.0) || !b.is_bounded() || !self.is_bounded() {
             Self::whole()
+        } else if self.low == zero && self.high == zero {
+            Self::of(zero, zero)
         } else {
             let ends = [(self.low, b.low), (self.low, b.high), (self.high, b.low), (self.high, b.high)];
             let [low, high] = extremes(ends.map(|(one, other)| one / other));
@@ -234,11 +237,13 @@ impl<F: Float> Seen<F> {
                 self.wave(|angles| F::sines(angles).0).over(self.wave(|angles| F::sines(angles).1))
             }
             Step::Call(Function::Exp) => {
-                Self::computed(self.low.exp(), self.high.exp()).at_least(0.0).with(self)
+                let (low, high) = F::exps(self.low, self.high);
+                Self::computed(low.min(F::MAX), high).at_least(0.0).with(self)
             }
             Step::Call(Function::Ln) => {
                 let within = self.at_least(0.0);
-                let values = Self::computed(within.low.ln(), within.high.ln());
+                let (low, high) = F::lns(within.low, within.high);
+                let values = Self::computed(low, high);
                 let low = if within.low == zero { -F::INFINITY } else { values.low };
                 Self { low, ..values }.with(self).only_if(self.is_positive(false))
             }
@@ -257,6 +262,8 @@ impl<F: Float> Seen<F> {
                 let high = if self.high < zero { zero } else { one };
                 Self::of(low, high).continuous_if(low == high).with(self)
             }
+            // The values of a spline are not looked up.
+            Step::Spline => Self::whole().with(self),
             _ => Self::whole().with(self).only_if(None),
         }
     }

@@ -53,7 +53,11 @@ impl<F: Float> Search<'_, F> {
     /// Tells whether a piece has no hit although the slope has no bounds: the surface is cut off there, as where its
     /// formula is not defined, or the formula jumps past 0.
     fn is_broken(&self, piece: Interval<F>) -> bool {
-        let jumps = |field: &Field| field.jumps_past_0(self.line.at(piece));
+        let at = self.line.at(piece);
+        // 53 bits, which take a hundredth of the time, decide nearly all.
+        let jumps = |field: &Field| {
+            field.jumps_past_0(at.map(Interval::coarse)) || F::IS_LONG && field.jumps_past_0(at)
+        };
         self.shape.field().is_some_and(jumps) || !may_be_hit(self.shape, self.line, piece)
     }
 
