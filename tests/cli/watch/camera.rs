@@ -16,14 +16,15 @@ const SHIFT: char = '\u{e008}';
 const RIGHT: char = '\u{e014}';
 const UNDER: &str = "document.querySelector('#under').textContent";
 
-/// Returns a position in the window: the middle of the image, and from there this many pixels of the screen right and down.
-pub fn middle(browser: &Browser, [right, down]: [i64; 2]) -> [i64; 2] {
+/// Returns positions in the window: the middle of the image, and from there these many pixels of the screen right and down.
+/// They are read at once, as what stands above the image may still be laid out.
+pub fn around_middle<const N: usize>(browser: &Browser, places: [[i64; 2]; N]) -> [[i64; 2]; N] {
     let place = browser.run(
         "const box = document.querySelector('canvas').getBoundingClientRect();
          return [box.left + box.width / 2, box.top + box.height / 2]",
     );
-    let at = [0, 1].map(|side| place[side].as_f64().expect("a number") as i64);
-    [at[0] + right, at[1] + down]
+    let middle = [0, 1].map(|side| place[side].as_f64().expect("a number") as i64);
+    places.map(|[right, down]| [middle[0] + right, middle[1] + down])
 }
 
 /// Writes what is tried out into the scene, waits for its image, and returns the text.
@@ -70,7 +71,7 @@ fn a_drag_in_the_mode_takes_the_camera_around_and_only_its_numbers_are_written()
     let Some((watching, browser)) = opened(LOOK_AT) else { return };
     browser.press('c');
     browser.wait("!document.querySelector('#fields').hidden");
-    let [from, over, to] = [[0, 0], [60, 10], [100, -30]].map(|by| middle(&browser, by));
+    let [from, over, to] = around_middle(&browser, [[0, 0], [60, 10], [100, -30]]);
     browser.drag(0, None, &[from, over, to]);
     let text = written(&watching, &browser);
     let [position, target] = [numbers(&text, "position"), numbers(&text, "target  ")];
@@ -87,7 +88,7 @@ fn a_drag_in_the_mode_takes_the_camera_around_and_only_its_numbers_are_written()
 fn shift_and_the_right_button_pan_and_the_wheel_goes_nearer() {
     let Some((watching, browser)) = opened(LOOK_AT) else { return };
     browser.press('c');
-    let [from, to] = [[0, 0], [90, 0]].map(|by| middle(&browser, by));
+    let [from, to] = around_middle(&browser, [[0, 0], [90, 0]]);
     let position = |text: &str| numbers::<3>(text, "position");
     browser.drag(0, Some(SHIFT), &[from, to]);
     let once = written(&watching, &browser);
@@ -131,7 +132,7 @@ fn the_camera_goes_around_the_point_that_was_clicked() {
     browser.wait("!document.querySelector('#told').hidden");
     let probe = browser.text("return document.querySelector('#told pre').textContent");
     assert!(probe.contains("ball"), "{probe}");
-    let [from, to] = [[0, 0], [80, 0]].map(|by| middle(&browser, by));
+    let [from, to] = around_middle(&browser, [[0, 0], [80, 0]]);
     browser.drag(0, None, &[from, to]);
     let after = written(&watching, &browser);
     // The same pixel shows nearly the same point of the ball, which is not in the middle.
@@ -153,14 +154,14 @@ fn the_notes_camera_moves_before_its_image_plane() {
     let text = ball("9 0 0");
     let Some((watching, browser)) = opened(&text) else { return };
     browser.press('c');
-    let [from, to] = [[0, 0], [50, 0]].map(|by| middle(&browser, by));
+    let [from, to] = around_middle(&browser, [[0, 0], [50, 0]]);
     browser.drag(0, Some(SHIFT), &[from, to]);
     let after = written(&watching, &browser);
     let [x, y, z] = numbers(&after, "viewpoint");
     assert!(x > 4.0 && y == 3.0 && z == 6.0, "{after}");
     assert_eq!(after, text.replace("viewpoint 4", &format!("viewpoint {x}")));
     // Right through the image plane: it stays where it last could be.
-    browser.drag(0, None, &[from, middle(&browser, [0, 290])]);
+    browser.drag(0, None, &around_middle(&browser, [[0, 0], [0, 290]]));
     let [_, _, z] = numbers(&written(&watching, &browser), "viewpoint");
     assert!(z > 0.0);
     assert_eq!(browser.text(&format!("return {UNDER}")), "the camera cannot go there");
@@ -220,7 +221,7 @@ fn a_key_turns_the_notes_camera_into_one_that_orbits() {
     browser.press('l');
     browser.wait("document.querySelector('#fields p span').textContent.startsWith('turned')");
     browser.wait("document.querySelector('#turn').hidden");
-    let [from, to] = [[0, 0], [100, 0]].map(|by| middle(&browser, by));
+    let [from, to] = around_middle(&browser, [[0, 0], [100, 0]]);
     browser.drag(0, None, &[from, to]);
     let text = written(&watching, &browser);
     let position = numbers(&text, "position");
@@ -232,7 +233,7 @@ fn a_camera_that_is_computed_says_why_it_stays() {
     let text = LOOK_AT.replace("position 4", "position \"2+2\"");
     let Some((watching, browser)) = opened(&text) else { return };
     browser.press('c');
-    let [from, to] = [[0, 0], [50, 0]].map(|by| middle(&browser, by));
+    let [from, to] = around_middle(&browser, [[0, 0], [50, 0]]);
     browser.drag(0, None, &[from, to]);
     let reason = "the camera cannot be moved by its `position`: it is a formula: change the text";
     browser.wait(&format!("{UNDER} === '{reason}'"));
@@ -248,7 +249,7 @@ fn a_camera_from_another_file_says_why_it_stays() {
     watching.save(&format!("include eye.ray\nmaterial{rest}"));
     browser.wait("document.documentElement.dataset.shown === '2'");
     browser.press('c');
-    let [from, to] = [[0, 0], [50, 0]].map(|by| middle(&browser, by));
+    let [from, to] = around_middle(&browser, [[0, 0], [50, 0]]);
     browser.drag(0, None, &[from, to]);
     browser.wait(&format!("{UNDER} === '`eye` is repeated or included: change the text'"));
 }
@@ -256,9 +257,9 @@ fn a_camera_from_another_file_says_why_it_stays() {
 #[test]
 fn outside_of_the_mode_a_drag_moves_the_sheet_alone() {
     let Some((_watching, browser)) = opened(LOOK_AT) else { return };
-    let [from, to] = [[0, 0], [50, 20]].map(|by| middle(&browser, by));
+    let [from, to] = around_middle(&browser, [[0, 0], [50, 20]]);
     browser.drag(0, None, &[from, to]);
-    assert_eq!(middle(&browser, [0, 0]), to);
+    assert_eq!(around_middle(&browser, [[0, 0]]), [to]);
     assert_eq!(browser.text("return document.documentElement.dataset.version"), "1");
 }
 

@@ -1,7 +1,7 @@
 //! The page on a phone, in light and dark colours, by keys alone, and for readers of the screen.
 
 use crate::watch::browser::Browser;
-use crate::watch::camera::{LOOK_AT, distance, middle, numbers, written};
+use crate::watch::camera::{LOOK_AT, around_middle, distance, numbers, written};
 use crate::watch::page::{click, opened};
 use crate::watch::program::Watching;
 use std::{env, fs};
@@ -113,7 +113,7 @@ fn nothing_is_wider_than_a_phone() {
 fn what_fingers_touch_is_large_and_a_slider_follows_them() {
     let Some((watching, browser)) = opened(LOOK_AT) else { return };
     browser.emulate(PHONE, true, "light");
-    let at = middle(&browser, [0, 0]);
+    let [at] = around_middle(&browser, [[0, 0]]);
     browser.touch(&[&[at]]);
     browser.wait("document.querySelector('#field-radius-0') && !document.querySelector('#told').hidden");
     let small = browser.text(
@@ -141,9 +141,9 @@ fn two_fingers_zoom_the_sheet_or_take_the_camera_nearer() {
     browser.emulate(PHONE, true, "dark");
     browser.wait("document.querySelector('canvas').getBoundingClientRect().right < 390");
     let spread = |browser: &Browser| {
-        let at = |by: [i64; 2]| middle(browser, by);
-        browser
-            .touch(&[&[at([-20, 0]), at([-40, 0]), at([-60, 0])], &[at([20, 0]), at([40, 0]), at([60, 0])]]);
+        let [left, middle_left, far_left, right, middle_right, far_right] =
+            around_middle(browser, [[-20, 0], [-40, 0], [-60, 0], [20, 0], [40, 0], [60, 0]]);
+        browser.touch(&[&[left, middle_left, far_left], &[right, middle_right, far_right]]);
     };
     let wide = |browser: &Browser| {
         browser
