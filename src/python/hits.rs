@@ -339,8 +339,7 @@ pub fn occluded<'py>(
 impl Hits {
     /// Returns the objects and the surfaces that this many rays leave.
     fn starts<'py>(&self, py: Python<'py>, rays: usize) -> PyResult<[PyReadonlyArray1<'py, i32>; 2]> {
-        let of =
-            |array: &Py<PyAny>| array.bind(py).extract::<PyReadonlyArray1<'py, i32>>().map_err(PyErr::from);
+        let of = |array: &Py<PyAny>| array.bind(py).extract::<PyReadonlyArray1<'py, i32>>();
         let starts = [of(&self.object)?, of(&self.surface)?];
         match starts[0].len()? {
             hits if hits == rays => Ok(starts),
