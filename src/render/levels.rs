@@ -7,7 +7,7 @@ pub struct Levels {
     pub brightest: u8,
     /// The number of white pixels.
     pub white: usize,
-    /// The number of pixels in runs of [`RUN`] in which no byte reaches [`DARK`].
+    /// The number of pixels in runs of 16 in which no byte reaches [`DARK`].
     pub dark: usize,
     /// The number of all pixels.
     pub pixels: usize,

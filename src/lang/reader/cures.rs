@@ -53,10 +53,9 @@ pub fn cure(attribute: &dyn Attribute, words: &[Word<'_>], syntax: Syntax) -> Op
     {
         return Some(format!("{across} x {up} samples are {}", write(&[f64::from(across) * f64::from(up)])));
     }
-    let numbers = numbers(text)?;
-    if !takes(numbers.len()) {
-        return None;
-    }
+    // What is written as numbers are is not cured by writing it so.
+    let are_numbers = words.iter().all(|word| word.text.parse::<f64>().is_ok());
+    let numbers = numbers(text).filter(|numbers| !are_numbers && takes(numbers.len()))?;
     let is_levels = lower.starts_with("rgb") && numbers.iter().any(|number| *number > 1.0);
     let numbers = match is_levels {
         true => numbers.iter().map(|level| (level / 255.0 * 1000.0).round() / 1000.0).collect(),
