@@ -95,7 +95,7 @@ impl Hittable for Ball {
             }
             // As a search without a bound, which most rays end soon.
             Fault::Slow if ray.dir.x > 0.9 => {
-                let lost: f64 = (0..5_000_000).map(|number| libm::sin(f64::from(number))).sum();
+                let lost: f64 = (0..3_000_000).map(|number| libm::sin(f64::from(number % (1 << 20)))).sum();
                 if lost.is_nan() { MISS } else { first }
             }
             _ => first,
@@ -153,7 +153,7 @@ macro_rules! ball {
 }
 
 static PLANTED: [(Promise, &str, Entity); 12] = [
-    (Promise::HitIsAccurate, " off the surface", ball!("a_cancellation", Fault::Cancellation)),
+    (Promise::HitIsAccurate, " from [", ball!("a_cancellation", Fault::Cancellation)),
     (Promise::HitIsOnTheSurface, "it is hit at ", ball!("a_epsilon", Fault::Epsilon)),
     (Promise::BoundsHoldHits, "it is hit at ", ball!("a_low_box", Fault::LowBox)),
     (Promise::NormalsPointOut, "sides", ball!("a_inward", Fault::Inward)),

@@ -27,7 +27,7 @@ pub const VARIANTS: [&str; 3] = [
 /// Tries the objects of a scene.
 ///
 /// # Errors
-/// Fails if a ray hits an object outside of its bounds, or is inside of a closed object before its first hit of any.
+/// Fails if a ray takes long, hits an object outside of its bounds, or is inside of a closed object before its first hit of any.
 pub fn try_objects(objects: &[Object]) -> Result<(), Fault> {
     for object in objects {
         let shape = &object.shape;
@@ -47,6 +47,7 @@ pub fn try_objects(objects: &[Object]) -> Result<(), Fault> {
             for dir in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
                 let ray = Ray { origin: aim - (1.5 * length + 1.0) * dir, dir };
                 let tried = RayTrial { shape, ray, is_exact: true };
+                tried.check_speed()?;
                 let distance = tried.distance_in_range(&ray, &RayRange::ALL)?;
                 if distance < MISS {
                     tried.check_bounds(ray.at(distance))?;
@@ -73,11 +74,11 @@ fn extreme(shape: &AnyShape, middle: DVec3, half: DVec3, (axis, side): (usize, f
     let outward = DVec3::AXES[axis] * if side > middle[axis] { 1.0 } else { -1.0 };
     let depth = |part: DVec2| {
         let origin = on_side(part) + (half.max_element() + 1.0) * outward;
-        shape.distance(&Ray { origin, dir: -outward }, &RayRange::ALL)
+        RayTrial { shape, ray: Ray { origin, dir: -outward }, is_exact: true }.distance_in_time()
     };
-    let Some(proven) = of_closed(shape) else { return Ok(on_side(least(depth))) };
+    let Some(proven) = of_closed(shape) else { return Ok(on_side(least(depth)?)) };
     let value = |part: DVec2| value(proven, constants(on_side(part)));
-    let at = least(|part| value(part).middle());
+    let at = least(|part| Ok(value(part).middle()))?;
     // The bounds may be off by rounding.
     let beyond = on_side(at) + 1e-9 * (middle.abs() + half).max_element() * outward;
     if self::value(proven, constants(beyond)).high < 0.0 {
@@ -125,19 +126,32 @@ fn value(proven: &dyn ProofMethods, at: [Interval; 3]) -> Interval {
 
 /// Returns where a function on the square from -1 to 1 is least, or nearly so: the best place of a grid, improved by
 /// smaller and smaller steps.
-fn least(of: impl Fn(DVec2) -> f64) -> DVec2 {
-    let grid = (0..25).map(|cell| 0.4 * DVec2::new(f64::from(cell % 5) - 2.0, f64::from(cell / 5) - 2.0));
-    let better = |best: (f64, DVec2), at: DVec2| {
-        let value = of(at);
-        if value < best.0 { (value, at) } else { best }
+fn least(of: impl Fn(DVec2) -> Result<f64, Fault>) -> Result<DVec2, Fault> {
+    let (mut best, mut at) = (MISS, DVec2::ZERO);
+    let mut try_place = |place: DVec2| {
+        let value = of(place)?;
+        let is_better = value < best;
+        if is_better {
+            (best, at) = (value, place);
+        }
+        Ok(is_better.then_some(place))
     };
-    let mut best = grid.fold((MISS, DVec2::ZERO), better);
+    let mut middle = DVec2::ZERO;
+    for cell in 0..25 {
+        let place = 0.4 * DVec2::new(f64::from(cell % 5) - 2.0, f64::from(cell / 5) - 2.0);
+        middle = try_place(place)?.unwrap_or(middle);
+    }
     let mut step = 0.2;
     while step > 1e-9 {
-        let around = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(|aside| best.1 + step * aside);
-        let next = around.into_iter().filter(|at| at.abs().max_element() <= 1.0).fold(best, better);
-        step *= if next.0 < best.0 { 1.0 } else { 0.5 };
-        best = next;
+        let mut next = None;
+        for aside in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
+            let place = middle + step * aside;
+            if place.abs().max_element() <= 1.0 {
+                next = try_place(place)?.or(next);
+            }
+        }
+        step *= if next.is_some() { 1.0 } else { 0.5 };
+        middle = next.unwrap_or(middle);
     }
-    best.1
+    Ok(at)
 }
