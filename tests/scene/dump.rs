@@ -100,6 +100,7 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "parallel",
         "collinear",
         "empty box",
+        "is nowhere 0 or more in",
         "are unbounded in the range of",
         "is capped, but has no",
         "has a ramp that ends where it begins",
