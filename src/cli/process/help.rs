@@ -41,6 +41,7 @@ mod tests {
         let help = line().render_help().to_string();
         assert!(help.contains("\nScenes:\n") && !help.contains("\nRays:\n"), "{help}");
         let long = line().render_long_help().to_string();
-        assert!(long.contains("  tabray render") && !long.contains("tabray watch"), "{long}");
+        // Examples have the name of the running program, here that of a test.
+        assert!(long.contains(" render ball.ray") && !long.contains(" watch ball.ray"), "{long}");
     }
 }
