@@ -283,6 +283,12 @@ fn stl_files(all: &mut Vec<File>) {
     add("bytes, a title like a text", pair.stl_bytes("solid pair", 24, &[]), &pair, "");
     add("bytes, spare ones after a title like a text", pair.stl_bytes("solid", 24, b"\n"), &pair, "");
     add("bytes, a count that is too small", cube.stl_bytes("cube", 7, &[]), &cube, "announces 7 triangles");
+    add(
+        "bytes, a count that is 1 too small",
+        cube.stl_bytes("cube", 11, &[]),
+        &cube,
+        "announces 11 triangles",
+    );
     add("bytes, a count of 0", cube.stl_bytes("", 0, &[]), &cube, "announces 0 triangles");
     add(
         "text, `end solid` and `end loop`",
