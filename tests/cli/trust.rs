@@ -155,6 +155,25 @@ fn a_file_that_is_no_scene_is_not_shown() {
 }
 
 #[test]
+fn values_of_a_file_are_set_and_files_that_never_end_or_lie_outside_are_refused() {
+    let folder = workplace();
+    fs::write(folder.path().join("in/values.json"), "{\"ball\": {\"radius\": 0.5, \"center\": [4, 3, -9]}}")
+        .expect("a file");
+    let (status, said) = told(&folder, "dump in/plain.ray --root in --set-from in/values.json");
+    assert!(status == 0 && said.contains("-9.0") && said.contains("0.5"), "{said}");
+    fs::write(folder.path().join("long.json"), format!("{{\"a\": \"{}\"}}", "b".repeat(2 << 20))).expect("a file");
+    for (line, why) in [
+        ("check in/plain.ray --root in --set-from secret", OUTSIDE),
+        ("check in/plain.ray --set-from long.json", "it is larger than 1 MiB"),
+        ("check in/plain.ray --set-from /dev/zero", "cannot be read"),
+        ("check in/plain.ray --set-from secret", "expected value at line 1"),
+    ] {
+        let (status, said) = told(&folder, line);
+        assert!(status == 2 && said.contains(why) && !said.contains("hunter2"), "{line}: {said}");
+    }
+}
+
+#[test]
 fn nothing_that_waits_or_never_ends_is_read() {
     let folder = workplace();
     let pipe = folder.path().join("in/pipe.ray");

@@ -3,9 +3,12 @@
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Command, Error, FromArgMatches};
 use serde_json::Value;
-use std::fs;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use tabray_core::text;
+use tabray_core::{files, text};
+
+/// The most bytes of a file of values.
+const MOST: u64 = 1 << 20;
 
 /// The values that are set.
 #[derive(Clone, Default)]
@@ -61,7 +64,12 @@ impl clap::Args for Args {
 /// Reads values from a JSON file.
 fn read(path: &Path) -> Result<Vec<String>, String> {
     let what = |why: &str| format!("the values in `{}` cannot be read: {why}", text::shown(path));
-    let bytes = fs::read(path).map_err(|error| what(&error.to_string()))?;
+    let mut bytes = Vec::new();
+    let read = files::open(path).and_then(|file| file.take(MOST + 1).read_to_end(&mut bytes));
+    read.map_err(|error: io::Error| what(&error.to_string()))?;
+    if bytes.len() as u64 > MOST {
+        return Err(what("it is larger than 1 MiB"));
+    }
     let value = serde_json::from_slice(&bytes).map_err(|error| what(&error.to_string()))?;
     let mut values = Vec::new();
     let is_read = matches!(value, Value::Object(_)) && add("", &value, &mut values);
