@@ -30,8 +30,12 @@ pub(super) fn read(bytes: &mut dyn ImageBytes, most: u64) -> Result<(DynamicImag
     let chunks = exr::block::read(bytes, false).map_err(|error| reason(&error))?;
     let Colours { part, names, alpha, are_several } = colours(chunks.headers())?;
     let taken = chunks.headers().iter().map(|Header { layer_size, channels, shared_attributes, .. }| {
+        let bytes = |[width, height]: [usize; 2], of_pixel: usize| {
+            (width as u64).saturating_mul(height as u64).saturating_mul(of_pixel as u64)
+        };
         let shown = shared_attributes.display_window.size;
-        (layer_size.area() as u64).saturating_mul(channels.bytes_per_pixel as u64) + 16 * shown.area() as u64
+        let held = bytes([layer_size.width(), layer_size.height()], channels.bytes_per_pixel);
+        held.saturating_add(bytes([shown.width(), shown.height()], 16))
     });
     if taken.fold(0, u64::saturating_add) > most {
         return Err(format!("it takes more than {} of memory", bytesize::ByteSize(most)));
