@@ -81,7 +81,7 @@ impl OpenRay {
         let LightRange { low, high } = match (self.kind, self.counted) {
             (RayKind::Scattered, _) => depth.scattered[self.bounces as usize - 1],
             (_, CountedLight::All) => depth.ranges[self.object as usize][side],
-            (_, _) => depth.ranges[self.object as usize][side].from_nothing(),
+            (_, _) => depth.ranges[self.object as usize][side].down_to_black(),
         };
         let [one, other] = [low, high].map(|light| times(self.weight, light));
         LightRange { low: one.min(other), high: one.max(other) }

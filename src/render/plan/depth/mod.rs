@@ -104,7 +104,7 @@ impl Depth {
     /// Computes the bounds of any scene.
     pub(crate) fn of(model: &Model) -> Self {
         let looks = looks(model);
-        let surfaces = surfaces(model, &looks, BoundedLight::default(), background(model));
+        let (surfaces, _) = surfaces(model, &looks, BoundedLight::default(), background(model));
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
         let (most, objects) = VisibleSurfaces::new(model, surfaces, background(model)).bounds(cuts);
         let (ranges, scattered) = match model.camera.value.rules {
@@ -149,7 +149,7 @@ fn background(model: &Model) -> f64 {
 /// no bound.
 pub(crate) fn most(model: &Model) -> f64 {
     let background = background(model);
-    let surfaces = surfaces(model, &looks(model), BoundedLight::default(), background);
+    let (surfaces, _) = surfaces(model, &looks(model), BoundedLight::default(), background);
     VisibleSurfaces::new(model, surfaces, background).bounds(false).0
 }
 
@@ -159,18 +159,27 @@ pub(crate) fn most_of_lights(model: &Model) -> Vec<f64> {
     let looks = looks(model);
     let most = |light: usize| {
         let of = BoundedLight { light: Some(light), channel: None };
-        VisibleSurfaces::new(model, surfaces(model, &looks, of, 0.0), 0.0).bounds(false).0
+        let (surfaces, _) = surfaces(model, &looks, of, 0.0);
+        VisibleSurfaces::new(model, surfaces, 0.0).bounds(false).0
     };
     parallel::map(model.lights.len(), most)
 }
 
-/// Bounds the surfaces of a scene, with the light that matt ones receive from others as their own.
-fn surfaces(model: &Model, looks: &[Option<Look>], of: BoundedLight, background: f64) -> Vec<SurfaceLight> {
+/// Bounds the surfaces of a scene, with the light that matt ones receive from others as their own, and the light of
+/// rays from matt surfaces, by the number of matt surfaces before on their paths; none where light does not bounce.
+fn surfaces(
+    model: &Model,
+    looks: &[Option<Look>],
+    of: BoundedLight,
+    background: f64,
+) -> (Vec<SurfaceLight>, Vec<f64>) {
     let surfaces = SurfaceLight::all(model, looks, of);
-    match scattered(model, &surfaces, background).first() {
+    let scattered = scattered(model, &surfaces, background);
+    let surfaces = match scattered.first() {
         Some(most) => surfaces.into_iter().map(|surface| surface.lit_by(*most)).collect(),
         None => surfaces,
-    }
+    };
+    (surfaces, scattered)
 }
 
 /// Bounds the light of rays from matt surfaces, by the number of matt surfaces before on their paths; empty where light

@@ -12,7 +12,7 @@
 
 use super::sides::{SIDES, Sides};
 use super::solve::VisibleSurfaces;
-use super::surface::{BoundedLight, SurfaceLight};
+use super::surface::BoundedLight;
 use glam::DVec3;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::per_axis;
@@ -38,7 +38,7 @@ pub struct LightRange {
 
 impl LightRange {
     /// Returns the range for rays to which the light of some things does not count.
-    pub fn from_nothing(self) -> Self {
+    pub fn down_to_black(self) -> Self {
         Self { low: self.low.min(Rgb::ZERO), ..self }
     }
 }
@@ -51,14 +51,10 @@ pub(super) fn ranges(model: &Model, looks: &[Option<Look>]) -> (Vec<Sides<LightR
     let [darkest, brightest] = background(model);
     for channel in 0..3 {
         let of = BoundedLight { light: None, channel: Some(channel) };
-        for (range, most) in scattered.iter_mut().zip(super::scattered(
-            model,
-            &SurfaceLight::all(model, looks, of),
-            brightest[channel],
-        )) {
+        let (surfaces, most_scattered) = super::surfaces(model, looks, of, brightest[channel]);
+        for (range, most) in scattered.iter_mut().zip(most_scattered) {
             range.high[channel] = most;
         }
-        let surfaces = super::surfaces(model, looks, of, brightest[channel]);
         for (index, most) in VisibleSurfaces::new(model, surfaces, brightest[channel]).beyond() {
             (0..SIDES.len()).for_each(|side| ranges[index][side].high[channel] = most[side]);
         }
