@@ -258,11 +258,14 @@ fn what_beginners_write_is_told_with_the_cure() {
         ("sphere ball", "sphere big ball", "a name is one word: `sphere big_ball {`"),
         ("sphere ball {", "sphere ball (", "attributes go in braces: `sphere ball { ... }`"),
         ("sphere ball {", "for i 5 { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
+        ("sphere ball {", "for i 1 3 { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
+        ("sphere ball {", "while i < 3 { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
         ("sphere ball {", "for (i = 0; i < 5; i++) sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
     ] {
         fs::write(folder.path().join("a.ray"), scene.replace(from, to)).expect("a scene");
         let (status, _, said) = outcome(tabray(&folder).args(["check", "a.ray"]));
         assert!(status == 2 && said.contains(cure), "{to}: {said}");
+        assert!(!to.contains("i 1 3") || said.matches("error:").count() == 1, "{to}: {said}");
     }
     let toml = "[camera.eye]\npixeldim = [160, 120]\nworlddim = [8, 6]\nviewpoint = \"4 3 6\"\n";
     fs::write(folder.path().join("a.toml"), toml).expect("a scene");

@@ -4,7 +4,7 @@ use super::fault::Fault;
 use tabray_core::scene::kind::Kind;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::value::Datum;
-use tabray_core::world::material::Rgb;
+use tabray_core::world::material::{Material, Rgb};
 
 /// Returns what to warn of in a scene.
 pub fn warnings(model: &Model) -> impl Iterator<Item = Fault> {
@@ -13,15 +13,17 @@ pub fn warnings(model: &Model) -> impl Iterator<Item = Fault> {
 
 /// Warns of `ambient` beside `bounces`.
 fn counted_twice(model: &Model) -> Option<Fault> {
-    let has_both = |material: &Rgb, diffuse: &Rgb| *material != Rgb::ZERO && *diffuse != Rgb::ZERO;
-    let mut materials = model.materials.iter().map(|item| (&item.args, &item.value));
-    let (args, _) = materials.find(|(_, material)| has_both(&material.ambient, &material.diffuse))?;
-    (model.camera.value.bounces != 0).then(|| {
-        let message = format!("the `ambient` of `{}` counts beside the light of `bounces`", args.name());
+    if model.camera.value.bounces == 0 {
+        return None;
+    }
+    let has_both = |material: &Material| material.ambient != Rgb::ZERO && material.diffuse != Rgb::ZERO;
+    let material = model.materials.iter().find(|item| has_both(&item.value))?;
+    let message = format!("the `ambient` of `{}` counts beside the light of `bounces`", material.args.name());
+    Some(
         Fault::warning(None, message).help(
             "`ambient` stands in for light from everywhere, which `bounces` computes: leave one of them out",
-        )
-    })
+        ),
+    )
 }
 
 /// Warns of emission in a material that is not an object's own.

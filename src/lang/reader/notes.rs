@@ -1,6 +1,8 @@
 //! The grammar of the notes' scene language: `entity-type name { attribute values ... }`, one word after another. The
 //! reader, `fmt` and editors share it.
 
+mod mistakes;
+
 use super::fault::Fault;
 use super::guesses::{Tables, is_value, looks_like_number};
 use super::keyword::Keyword;
@@ -154,23 +156,6 @@ impl<'a, 'r> Grammar<'a, 'r> {
             && self.token().is_some_and(|token| !looks_like_number(&self.text(token)))
     }
 
-    /// Tells whether a loop of another language begins here, in the form of a `repeat`.
-    fn is_loop(&self) -> bool {
-        self.has_loop_word() && self.is_word(1) && self.is_word(2)
-    }
-
-    fn has_loop_word(&self) -> bool {
-        let word = self.token().filter(|token| token.form == TokenForm::Word);
-        word.is_some_and(|word| matches!(self.tokens.raw(word), "for" | "foreach" | "loop" | "while"))
-    }
-
-    /// Reports a loop of another language.
-    fn refuse_loop(&mut self) {
-        let Some(word) = self.token() else { return };
-        let message = format!("there is no `{}`", self.text(word));
-        self.report.add(Fault::error(Some(word.place()), message).help(Keyword::Repeat.usage()));
-    }
-
     /// Tells whether an entity begins here, even with a missing name or brace.
     fn begins_entity(&self) -> bool {
         self.has_form()
@@ -193,6 +178,10 @@ impl<'a, 'r> Grammar<'a, 'r> {
         } else if self.is_loop() {
             self.refuse_loop();
             self.statement(Keyword::Repeat).map(Node::Statement)
+        } else if self.is_other_loop() {
+            self.refuse_loop();
+            self.skip_block();
+            Some(Node::Stray)
         } else if is_repeated && self.is(0, TokenForm::Close) {
             self.step().map(Node::Close)
         } else if self.begins_entity() {
@@ -270,7 +259,6 @@ impl<'a, 'r> Grammar<'a, 'r> {
 
     /// Skips words outside of entities.
     fn stray(&mut self, is_repeated: bool) -> Option<()> {
-        let is_loop = self.has_loop_word();
         let first = self.step()?;
         let (mut last, mut count) = (first, 1);
         while last.form != TokenForm::Close
@@ -292,10 +280,9 @@ impl<'a, 'r> Grammar<'a, 'r> {
                 .also(Some(opened.clone()), "the previous entity begins here")
                 .also(Some(closed.clone()), "and ends here");
         }
-        self.report.add(fault.help(match is_loop {
-            true => Keyword::Repeat.usage(),
-            false => "every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`",
-        }));
+        self.report.add(
+            fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"),
+        );
         Some(())
     }
 
@@ -319,35 +306,12 @@ impl<'a, 'r> Grammar<'a, 'r> {
                 Word::at("", Form::Any, first.end..first.end)
             }
         };
-        let further = self.further_words_of_name();
-        if further > 0 {
-            let mut words = vec![name.text.to_string()];
-            let mut end = first.end;
-            for _ in 0..further {
-                if let Some(word) = self.step() {
-                    words.push(self.text(word).into_owned());
-                    end = word.end;
-                }
-            }
-            let start = name.place.clone().map_or(first.end, |place| place.start);
-            let message = format!("`{}` is not one word", words.join(" "));
-            self.report.add(Fault::error(Some(start..end), message).help(format!(
-                "a name is one word: `{} {} {{`",
-                kind.text,
-                words.join("_")
-            )));
-        }
+        self.refuse_further_words(&kind, &name, first.end);
         let mut bracket = None;
         if self.is(0, TokenForm::Open) {
             self.step();
-        } else if let (false, Some((token, closing))) = (is_alone, self.wrong_bracket()) {
-            self.step();
+        } else if !is_alone && let Some(closing) = self.wrong_bracket(&kind, &name) {
             bracket = Some(closing);
-            let message = format!("`{}` in place of `{{`", self.text(token));
-            self.report.add(
-                Fault::error(Some(token.place()), message)
-                    .help(format!("attributes go in braces: `{} {} {{ ... }}`", kind.text, name.text)),
-            );
         } else if !is_alone {
             let after = name.place.clone().unwrap_or_default();
             self.report.add(
@@ -385,32 +349,6 @@ impl<'a, 'r> Grammar<'a, 'r> {
         entity.place = Some(first.start..self.before.end);
         self.last = Some((kind_at, self.before.clone()));
         Some(())
-    }
-
-    /// Returns how many words before a brace are further words of a name.
-    fn further_words_of_name(&self) -> usize {
-        let is_part = |ahead: usize| {
-            self.tokens.ahead[ahead].is_some_and(|token| {
-                !token.is_brace()
-                    && self.tokens.raw(token).bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
-                    && self.registry.find(&self.text(token)).is_none()
-            })
-        };
-        (1..3).find(|count| (0..*count).all(is_part) && self.is(*count, TokenForm::Open)).unwrap_or(0)
-    }
-
-    /// Returns a bracket where a brace is expected, and what closes it.
-    fn wrong_bracket(&self) -> Option<(Token, &'static str)> {
-        let token = self.token()?;
-        Some((
-            token,
-            match self.tokens.raw(token) {
-                "(" => ")",
-                "[" => "]",
-                "<" => ">",
-                _ => return None,
-            },
-        ))
     }
 
     /// Tells whether another attribute of the entity follows. Otherwise, skips the closing brace.
@@ -479,16 +417,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
     /// Skips an entity in place of a name, and reports it.
     fn nested_entity(&mut self, kind: Kind, name: &Word<'a>, entity: &mut Parsed<'a>) {
         let Some(open) = self.step() else { return };
-        let mut depth = 1;
-        while depth > 0
-            && let Some(token) = self.step()
-        {
-            depth = match token.form {
-                TokenForm::Open => depth + 1,
-                TokenForm::Close => depth - 1,
-                _ => depth,
-            };
-        }
+        self.skip_to_close();
         let place = open.start..self.before.end;
         let example = self.registry.example(kind, "NAME", self.report.syntax());
         let message = format!(
