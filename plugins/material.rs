@@ -12,6 +12,7 @@ static EMISSION: Pparm<Rgb> = Pparm::or(
 )
 .known_as(&["emissive", "emissivity"])
 .each(COLOUR)
+.must("0 or more in each channel", |light| light.min_element() >= 0.0)
 .not_dumped();
 static DIFFUSE: Pparm<Rgb> =
     Pparm::or("diffuse", "the diffuse reflection coefficients for red, green and blue", Rgb::ZERO)

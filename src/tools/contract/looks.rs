@@ -260,7 +260,7 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
 pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
     let Material { ambient, emission, diffuse, specular, shininess, transparency, interface } = material;
     let is_finite = [ambient, emission, diffuse, specular].iter().all(|colour| colour.is_finite());
-    if !is_finite || !shininess.is_finite() || !(0.0..=1.0).contains(transparency) {
+    if !is_finite || emission.min_element() < 0.0 || !shininess.is_finite() || !(0.0..=1.0).contains(transparency) {
         return Err(Promise::ReflectivityIsSound.fault(format!("it is {material:?}")));
     }
     let Some(interface) = interface else { return Ok(()) };
