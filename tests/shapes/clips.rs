@@ -45,6 +45,20 @@ fn a_ball_cuts_a_surface_open_as_a_formula_does() {
 }
 
 #[test]
+fn where_a_second_formula_is_below_0_there_is_no_surface() {
+    // Half a ball: its roots as a polynomial, beside the formula whose root ends it.
+    are_alike(
+        "implicit own { material white formula \"x^2 + y^2 + z^2 - 1\" where \"z\" box -2 -2 -2 2 2 2 }",
+        "implicit own { material white formula \"z - sqrt(1 - x^2 - y^2)\" box -2 -2 -2 2 2 2 }",
+    );
+    // By the difference of two coordinates, and where the surface has two parts.
+    are_alike(
+        "implicit own { material white formula \"x^4 + y^4 + z^4 - 1\" where \"x^2 - y*z - 0.1\" box -2 -2 -2 2 2 2 }",
+        "implicit own { material white formula \"if(x^2 - y*z - 0.1 > 0, x^4 + y^4 + z^4 - 1, 1)\" box -2 -2 -2 2 2 2 }",
+    );
+}
+
+#[test]
 fn a_capped_surface_is_an_intersection() {
     let egg = "(x/1.5)^2 + y^2 + z^2 - 0.9";
     for clip in ["ball", "cube", "turned"] {
