@@ -161,7 +161,8 @@ fn values_of_a_file_are_set_and_files_that_never_end_or_lie_outside_are_refused(
         .expect("a file");
     let (status, said) = told(&folder, "dump in/plain.ray --root in --set-from in/values.json");
     assert!(status == 0 && said.contains("-9.0") && said.contains("0.5"), "{said}");
-    fs::write(folder.path().join("long.json"), format!("{{\"a\": \"{}\"}}", "b".repeat(2 << 20))).expect("a file");
+    fs::write(folder.path().join("long.json"), format!("{{\"a\": \"{}\"}}", "b".repeat(2 << 20)))
+        .expect("a file");
     for (line, why) in [
         ("check in/plain.ray --root in --set-from secret", OUTSIDE),
         ("check in/plain.ray --set-from long.json", "it is larger than 1 MiB"),

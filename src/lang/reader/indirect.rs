@@ -19,11 +19,9 @@ fn counted_twice(model: &Model) -> Option<Fault> {
     let has_both = |material: &Material| material.ambient != Rgb::ZERO && material.diffuse != Rgb::ZERO;
     let material = model.materials.iter().find(|item| has_both(&item.value))?;
     let message = format!("the `ambient` of `{}` counts beside the light of `bounces`", material.args.name());
-    Some(
-        Fault::warning(None, message).help(
-            "`ambient` stands in for light from everywhere, which `bounces` computes: leave one of them out",
-        ),
-    )
+    Some(Fault::warning(None, message).help(
+        "`ambient` stands in for light from everywhere, which `bounces` computes: leave one of them out",
+    ))
 }
 
 /// Warns of emission in a material that is not an object's own.

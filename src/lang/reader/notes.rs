@@ -280,9 +280,8 @@ impl<'a, 'r> Grammar<'a, 'r> {
                 .also(Some(opened.clone()), "the previous entity begins here")
                 .also(Some(closed.clone()), "and ends here");
         }
-        self.report.add(
-            fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"),
-        );
+        self.report
+            .add(fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"));
         Some(())
     }
 

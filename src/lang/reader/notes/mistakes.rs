@@ -11,7 +11,10 @@ impl Grammar<'_, '_> {
     /// Tells whether a loop of another language begins here, in the form of a `repeat`.
     pub(super) fn is_loop(&self) -> bool {
         let is_before_brace = |token: Token| self.tokens.text[token.end..].trim_start().starts_with('{');
-        self.has_loop_word() && self.is_word(1) && self.is_word(2) && self.tokens.ahead[2].is_some_and(is_before_brace)
+        self.has_loop_word()
+            && self.is_word(1)
+            && self.is_word(2)
+            && self.tokens.ahead[2].is_some_and(is_before_brace)
     }
 
     /// Tells whether a loop of another language begins here, in a form of its own.

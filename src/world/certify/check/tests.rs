@@ -129,8 +129,7 @@ fn what_is_false_is_open() {
 
 #[test]
 fn a_thin_layer_is_seen_at_the_ends_of_pieces() {
-    let (surface, line) =
-        (surface("(z - 0.7)*(z - 0.7001)"), line::<f64>([0.0, 0.0, -3.0], [0.0, 0.0, 1.0]));
+    let (surface, line) = (surface("(z - 0.7)*(z - 0.7001)"), line::<f64>([0.0, 0.0, -3.0], [0.0, 0.0, 1.0]));
     let checked =
         |places: &[f64]| first(&surface, &line, HitEnclosure::Misses, &trail(&surface, &line, places));
     assert_eq!(checked(&[1.5, 3.0]), HitEnclosure::Misses);
