@@ -133,6 +133,10 @@ impl Emitter for AreaLight {
         Some(LightSample { toward: toward.try_normalize()?, distance, light })
     }
 
+    fn density(&self, at: DVec3, toward: DVec3, distance: f64) -> Option<f64> {
+        self.panel.density(at, toward, distance)
+    }
+
     fn extent(&self) -> Extent<'_> {
         Extent::Panel(self.panel)
     }

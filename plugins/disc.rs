@@ -36,6 +36,11 @@ impl Implicit for Disc {
         N::constant(self.radius).powi(2) - x.powi(2) - z.powi(2)
     }
 
+    fn luminous(&self) -> Option<Luminous> {
+        let half = [self.radius * DVec3::X, self.radius * DVec3::Z];
+        Some(Luminous::Panel(Panel { middle: DVec3::ZERO, half, is_round: true }))
+    }
+
     fn bounds(&self) -> [DVec3; 2] {
         let corner = self.radius * DVec3::new(1.125, 0.125, 1.125);
         [-corner, corner]

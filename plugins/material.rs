@@ -5,7 +5,8 @@ use tabray::prelude::*;
 static AMBIENT: Pparm<Rgb> =
     Pparm::or("ambient", "the emission in red, green and blue, independent of lights", Rgb::ZERO)
         .each(COLOUR);
-static EMISSION: Pparm<Rgb> = Pparm::or(
+/// The light that a surface gives by itself.
+pub static EMISSION: Pparm<Rgb> = Pparm::or(
     "emission",
     "the light that it gives in red, green and blue; it lights others where the camera has `bounces`",
     Rgb::ZERO,

@@ -96,6 +96,10 @@ impl<A: AccuracyTag> Hittable for Sphere<A> {
         Some(sphere::clearance(self.center, self.radius, from))
     }
 
+    fn luminous(&self) -> Option<Luminous> {
+        Some(Luminous::Ball(Ball { middle: self.center, radius: self.radius }))
+    }
+
     fn why_not_closed(&self) -> Option<&'static str> {
         None
     }

@@ -73,6 +73,10 @@ impl Emitter for SphereLight {
         })
     }
 
+    fn density(&self, at: DVec3, _toward: DVec3, _distance: f64) -> Option<f64> {
+        self.ball.density(at)
+    }
+
     fn extent(&self) -> Extent<'_> {
         Extent::Ball(self.ball)
     }

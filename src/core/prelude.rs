@@ -24,6 +24,7 @@ pub use tabray_world::emitter::{self, Emitter, Extent, LightSample};
 pub use tabray_world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Shape, Sides};
 pub use tabray_world::interface::{AnyInterface, Crossing, Interface, Law, Medium};
 pub use tabray_world::light::Light;
+pub use tabray_world::luminous::Luminous;
 pub use tabray_world::material::{Look, Material, Rgb};
 pub use tabray_world::panel::Panel;
 pub use tabray_world::patch::{Patch, PatchBounds, between, is_odd, odd_part, odd_part_bounds};

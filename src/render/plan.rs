@@ -1,11 +1,14 @@
 //! What a scene needs, decided once before any ray is traced, so that rendering can leave out everything else.
 
 pub mod depth;
+pub(crate) mod glow;
+pub(crate) mod lamps;
 pub mod needs;
 mod same_look;
 mod shut_out;
 
 use depth::{ContinuationBounds, Depth};
+use glow::Glow;
 use needs::{Needs, UnlitReason};
 use same_look::SameLook;
 pub(crate) use shut_out::ShutOut;
@@ -56,8 +59,26 @@ pub struct Plan<'m> {
     pub max_depth: usize,
     /// The lights that are sampled, and what is left out.
     pub needs: Needs,
+    /// For each object, the index of the light whose visible shape it is, if facets of rough surfaces aim at that light;
+    /// empty where they aim at none.
+    pub(crate) lamps: Vec<Option<usize>>,
+    /// What objects emit, where it lights others.
+    pub(crate) glow: Option<Glow>,
+    /// The ways by which rays meet what they both aim at and meet by chance.
+    pub(crate) ways: Ways,
     /// The lights that a closed object hides from all visible points.
     pub(crate) shut_out: Vec<ShutOut>,
+}
+
+/// The ways by which rays meet lamps and objects that emit, where they may aim at them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ways {
+    /// By both, each weighted by its density.
+    Both,
+    /// By aim alone.
+    Aim,
+    /// By chance alone.
+    Chance,
 }
 
 /// Objects whose hits may take long to find.
@@ -121,7 +142,7 @@ impl<'m> Plan<'m> {
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
         let has_media = objects.iter().any(|object| object.material.medium().is_some());
         let costly = depth.as_ref().and_then(|_| CostlyObjects::of(objects));
-        let max_depth = usize::MAX;
+        let (max_depth, lamps) = (usize::MAX, lamps::of(model, &needs.lights));
         let is_simple = tree.is_some() && depth.is_none() && !has_glass && !has_media;
         let same_look = if is_simple { SameLook::of(model) } else { None };
         Self {
@@ -139,6 +160,9 @@ impl<'m> Plan<'m> {
             costly,
             max_depth,
             needs,
+            lamps,
+            glow: Glow::of(model),
+            ways: Ways::Both,
             shut_out,
         }
     }
@@ -149,6 +173,12 @@ impl<'m> Plan<'m> {
         if adaptive.is_some() && self.features.is_none() {
             self.features = Some(Features::new(&self.camera, &self.model.objects));
         }
+    }
+
+    /// Lets rays meet what they may aim at by some ways only: each has the same mean, with other noise.
+    #[doc(hidden)]
+    pub fn meeting_by(self, ways: Ways) -> Self {
+        Self { ways, ..self }
     }
 
     /// Returns how rays continue from the object of this index.

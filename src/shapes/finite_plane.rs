@@ -1,6 +1,6 @@
 //! A rectangle as a shape: its hits for rays, packets and proofs.
 
-use super::rectangle::{FinitePlane, along_sides};
+use super::rectangle::{FinitePlane, Rectangle, along_sides};
 use glam::{DVec2, DVec3};
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::Interval;
@@ -11,6 +11,8 @@ use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use tabray_world::geometry::ray_packet::RayPacket;
 use tabray_world::hittable::{Bracketed, Certified, Facts, Hittable};
+use tabray_world::luminous::Luminous;
+use tabray_world::panel::Panel;
 
 impl<A: AccuracyTag> Hittable for FinitePlane<A> {
     #[inline(always)]
@@ -36,6 +38,12 @@ impl<A: AccuracyTag> Hittable for FinitePlane<A> {
 
     fn is_clear_of(&self, region: &Aabb) -> bool {
         self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
+    }
+
+    fn luminous(&self) -> Option<Luminous> {
+        let Rectangle { corner, dimensions, sides } = self.rectangle;
+        let half = [0.5 * dimensions.x * sides[0], 0.5 * dimensions.y * sides[1]];
+        Some(Luminous::Panel(Panel { middle: corner + half[0] + half[1], half, is_round: false }))
     }
 
     fn method(&self) -> String {

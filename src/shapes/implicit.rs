@@ -35,6 +35,7 @@ use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use tabray_world::geometry::ray_packet::RayPacket;
 use tabray_world::geometry::sight::Line;
 use tabray_world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Searched, Shape};
+use tabray_world::luminous::Luminous;
 use tabray_world::packets::shape::by_distance;
 
 /// The number of plain rays that take as long as a search: 25 for a torus, 60 for a heart.
@@ -90,6 +91,10 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 
     fn why_not_closed(&self) -> Option<&'static str> {
         self.formula.why_not_closed()
+    }
+
+    fn luminous(&self) -> Option<Luminous> {
+        self.formula.luminous()?.mapped(self.frame.axes, self.frame.origin)
     }
 
     /// Returns the same cost for all rays that enter the box. Counting the steps would repeat the search.

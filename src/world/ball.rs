@@ -2,6 +2,7 @@
 
 use crate::directions::in_cone;
 use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 
 /// A ball that shines at its surface, on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,13 +32,9 @@ impl Ball {
         let between = self.middle - at;
         let (distance, radius) = (between.length(), self.radius);
         let is_outside = distance > radius;
-        // 1 minus the cosine of the ball's angular radius.
-        let (axis, height) = if is_outside {
-            let (sine, square) =
-                (radius / distance, (distance - radius) / distance * (1.0 + radius / distance));
-            (between.try_normalize()?, sine * sine / (1.0 + square.sqrt()))
-        } else {
-            (normal, 1.0)
+        let (axis, height) = match self.height(distance) {
+            Some(height) => (between.try_normalize()?, height),
+            None => (normal, 1.0),
         };
         let toward = in_cone(axis, height, numbers);
         let along = between.dot(toward);
@@ -48,12 +45,25 @@ impl Ball {
         };
         Some(BallSample { toward, distance, solid_angle_over_pi: 2.0 * height })
     }
+
+    /// Returns the density, per unit of solid angle, with which [`sample`](Self::sample) chooses each point that is seen
+    /// from a place; `None` inside the ball.
+    pub fn density(&self, at: DVec3) -> Option<f64> {
+        let height = self.height((self.middle - at).length())?;
+        (height > 0.0).then(|| 1.0 / (2.0 * PI * height))
+    }
+
+    /// Returns 1 minus the cosine of the ball's angular radius at a distance from its middle; `None` inside the ball.
+    fn height(&self, distance: f64) -> Option<f64> {
+        let sine = self.radius / distance;
+        let square = (distance - self.radius) / distance * (1.0 + sine);
+        (distance > self.radius).then(|| sine * sine / (1.0 + square.sqrt()))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
 
     #[test]
     fn a_ball_is_chosen_evenly_over_what_is_seen_of_it() {

@@ -19,6 +19,14 @@ pub trait Emitter: Send + Sync {
     /// where the numbers stand for no point of the light.
     fn sample(&self, at: DVec3, normal: DVec3, numbers: DVec2) -> Option<LightSample>;
 
+    /// Returns the density, per unit of solid angle, with which [`sample`](Self::sample) chooses the point of the light
+    /// that is seen from a point `at` along the unit vector `toward`, at a distance in world units. Rough surfaces then
+    /// look for the light in mirrored directions and by its samples, and count either by its density. `None` where
+    /// mirrored directions alone are to count, which is always correct.
+    fn density(&self, _at: DVec3, _toward: DVec3, _distance: f64) -> Option<f64> {
+        None
+    }
+
     /// Describes all points of the light, for proofs, and how samples choose among them. The default is always correct.
     fn extent(&self) -> Extent<'_> {
         Extent::Unknown

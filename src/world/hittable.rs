@@ -9,6 +9,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
+use crate::luminous::Luminous;
 use glam::{DMat3, DVec2, DVec3};
 use std::marker::PhantomData;
 use tabray_exact::double_double::DoubleDouble;
@@ -118,6 +119,12 @@ pub trait Hittable: Send + Sync {
     /// Returns a lower bound on the distance from a point to the shape, in world units, or `None` where the bounding
     /// box gives as good a bound.
     fn clearance(&self, _from: DVec3) -> Option<f64> {
+        None
+    }
+
+    /// Returns the whole surface as rays aim at it where it gives light; `None` where only chance is to meet it, which
+    /// is always correct.
+    fn luminous(&self) -> Option<Luminous> {
         None
     }
 }

@@ -1,5 +1,6 @@
 //! Interfaces: how light continues at a surface. A material may have one.
 
+use crate::coat::Coat;
 use crate::geometry::ray::Side;
 use glam::DVec3;
 use std::any::Any;
@@ -31,6 +32,12 @@ pub trait Interface: Send + Sync {
     /// Returns the law by which rays [`cross`](Self::cross) the surface, for proofs. The default is always correct.
     fn law(&self) -> Law {
         Law::Unknown
+    }
+
+    /// Returns the clear coat that the interface is, over a matt body; `None` for other interfaces. It is the same in every
+    /// call. The body scatters what the coat lets through, and nothing is transmitted.
+    fn coat(&self) -> Option<&Coat> {
+        None
     }
 
     /// Returns how rough the surface is: 0 if it is smooth, and at most 1. It is the same in every call. Rays cross

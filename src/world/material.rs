@@ -1,5 +1,6 @@
 //! Colours, and how a surface reflects light.
 
+use crate::coat::Coat;
 use crate::interface::{AnyInterface, Medium};
 use glam::DVec3;
 
@@ -48,6 +49,16 @@ impl Material {
     /// Returns the medium that absorbs light behind the surface, if there is one.
     pub fn medium(&self) -> Option<Medium> {
         self.interface.as_ref().and_then(|interface| interface.medium())
+    }
+
+    /// Returns the clear coat over the surface, if it has one.
+    pub fn coat(&self) -> Option<&Coat> {
+        self.interface.as_ref().and_then(|interface| interface.coat())
+    }
+
+    /// Returns a look with the diffuse reflectivity under the surface's coat.
+    pub fn coated(&self, look: Look) -> Look {
+        Look { diffuse: self.coat().map_or(look.diffuse, |coat| coat.body(look.diffuse)), ..look }
     }
 
     /// Returns how rough the surface is for the rays that continue from it, from 0 to 1.

@@ -57,6 +57,18 @@ impl Panel {
         let is_beside = self.is_round && (toward - between).length_squared() > half[0].length_squared();
         (!is_beside).then_some((toward, seen.solid_angle))
     }
+
+    /// Returns the density, per unit of solid angle, with which [`sample`](Self::sample) chooses the point that is seen
+    /// from a place along a unit vector, at a distance in world units; `None` if the place lies in the panel's plane.
+    pub fn density(&self, at: DVec3, toward: DVec3, distance: f64) -> Option<f64> {
+        let between = self.middle - at;
+        if between.length() > self.far() {
+            let leaving = toward.dot(self.facing()).abs();
+            return (leaving > 0.0).then(|| distance * distance / (self.area() * leaving));
+        }
+        let seen = SphericalRectangle::new(between, self.half)?;
+        (seen.solid_angle > 0.0).then(|| 1.0 / seen.solid_angle)
+    }
 }
 
 /// Maps two numbers from 0 to 1 to the unit disc, with areas in proportion (Shirley and Chiu, "A Low Distortion Map

@@ -22,6 +22,7 @@ mod needs;
 mod packets;
 mod patches;
 mod plan;
+mod plastic;
 mod ray_budget;
 mod readme;
 mod rules;

@@ -4,7 +4,7 @@ use super::directions::{in_disc, orthonormal_pair, unit};
 use super::number::Number;
 use super::surface::HitPoints;
 use glam::DVec2;
-use tabray_exact::scalar::{dot, per_axis};
+use tabray_exact::scalar::{cross, dot, per_axis};
 
 impl<N: Number> HitPoints<N> {
     /// Returns the points with the normals of the facets that two numbers from 0 to 1 choose, among the facets that are
@@ -20,7 +20,9 @@ impl<N: Number> HitPoints<N> {
         let [across, up] = orthonormal_pair(normal)?;
         let seen = [width * dot(toward, across), width * dot(toward, up), dot(toward, normal).max(zero)];
         let seen = unit(seen);
-        let [right, above] = orthonormal_pair(seen)?;
+        let across_seen = (seen[0] * seen[0] + seen[1] * seen[1]).sqrt();
+        let right = [-seen[1] / across_seen, seen[0] / across_seen, zero];
+        let above = cross(seen, right);
         let [x, y] = in_disc::<N>(numbers);
         // The half of the disc that is turned away is squeezed into the part of it that can be seen.
         let part = N::constant(0.5) * (one + seen[2]);

@@ -8,6 +8,7 @@ use super::number::{Hit, Number};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::{HitPoints, is_black, tint};
 use crate::plan::depth::LightRange;
+use crate::plan::lamps;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
 use tabray_world::geometry::sight::Line;
@@ -217,8 +218,11 @@ impl<'s> EnclosingTracer<'s> {
             colour = per_axis(|channel| colour[channel] + glints[channel]);
         }
         let unit = per_axis(|axis| dir[axis] / ray.length);
+        let is_aimed = |index: &usize| lamps::is_aimed_at(&self.scene.model.lights[*index].value);
         let facet = match (interface.roughness(), self.lights) {
             (0.0, _) | (_, LightPoints::Middle) => None,
+            // The light that facets mirror by aim is only bounded.
+            _ if self.scene.lights.iter().any(is_aimed) => return self.open(ray, self.bound(ray)),
             (roughness, LightPoints::Of(sample)) => {
                 Some(surface.with_facet(unit, roughness, sample.on_facet(ray.depth as u32))?)
             }

@@ -1,5 +1,6 @@
 //! The tracer: its plan, its observer, and its scratch space, which is reused from one packet to the next.
 
+use super::aim::Aimed;
 use super::arrays::{NARROW, VectorList};
 use super::draws::LightDraws;
 use super::estimate::AdaptiveScratch;
@@ -109,6 +110,8 @@ pub struct Scratch {
     pub(super) transmittances: Vec<Box<Transmittance>>,
     /// The scratch space of direct light, which is finished before any rays continue.
     pub(super) lighting: Option<Box<LightScratch>>,
+    /// What a packet aims at.
+    pub(super) aimed: Vec<Aimed>,
     /// Not 0 for shadow rays whose occlusion is in doubt.
     pub(super) doubt: Vec<u64>,
     /// For each object of the list with bounds, a bit for each sub-packet that may hit the object.

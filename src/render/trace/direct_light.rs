@@ -32,11 +32,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         let mut lighting = self.scratch.lighting.take().unwrap_or_default();
         let (cpu, count) = (self.cpu, group.padded());
-        let Object { material, shader, .. } = &self.model.objects[surface.index];
+        let material = &self.model.objects[surface.index].material;
         let points = surface.points.view(count);
         let is_matt = match surface.look {
             Some(look) => look.diffuse != Rgb::ZERO,
-            None => shader.diffuses(cpu, material, surface.points(count), lighting.diffuse.resized(count)),
+            None => self.diffuses(surface, count, &mut lighting.diffuse),
         };
         let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
         let ray_budget = group.ray_budget[0];
@@ -55,6 +55,16 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             group.ray_budget[0] = ray_budget;
         }
         self.scratch.lighting = Some(lighting);
+    }
+
+    /// Computes the diffuse reflectivities at the points of a surface where they differ. Returns whether any is not 0.
+    pub(super) fn diffuses(&self, surface: &Surface, count: usize, diffuse: &mut VectorList) -> bool {
+        let Object { material, shader, .. } = &self.model.objects[surface.index];
+        let any = shader.diffuses(self.cpu, material, surface.points(count), diffuse.resized(count));
+        if let Some(coat) = material.coat() {
+            (0..count).for_each(|lane| diffuse.set(lane, coat.body(diffuse.get(lane))));
+        }
+        any
     }
 
     /// Computes the highlights at the points of a surface that glints, as rays return them.
@@ -89,6 +99,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (faced, source) = self.sample_light(index, group, surface, lighting);
         let LightScratch { diffuse, toward, strengths, t_max, emissivity, shines, blocked, shadows, .. } =
             lighting;
+        let material = &self.model.objects[surface.index].material;
+        if let Some(coat) = material.coat() {
+            for (lane, strength) in strengths[..count].iter_mut().enumerate() {
+                *strength *= surface.passed_by_coat(coat, lane, group.dir.get(lane), toward.get(lane));
+            }
+        }
         if !faced.any_shines {
             if W::SEES {
                 self.observer.see(Event::Light(
@@ -134,7 +150,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             looks: surface.reflectivities(diffuse, count),
         };
         let shows_highlights = light.emitter().is_none_or(|emitter| emitter.has_highlights());
-        let material = &self.model.objects[surface.index].material;
         let shininess = if shows_highlights { material.shininess } else { 0.0 };
         light::add_glints(cpu, &lit, shininess, colours.resized(count));
         if self.scratch.path_hashes.is_on {

@@ -10,6 +10,7 @@ use crate::limits::MAX_RAYS;
 use crate::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
 use crate::plan::depth::Depth;
 use glam::DVec3;
+use std::f64::consts::PI;
 use std::mem::take;
 use tabray_world::geometry::ray::Side;
 use tabray_world::geometry::ray_packet::PACKET_SIZE;
@@ -163,6 +164,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             return;
         }
         let Some(mut scratch) = self.scratch.trees.take() else { return };
+        let aims = self.aims();
         let (count, kept, is_flat) = (group.padded(), 1.0 - transparency, object.is_flat_mirror());
         let crossings = object.material.interface.as_deref();
         let crossings = crossings.map(|interface| surface.crossings(interface, group.dir.view(count)));
@@ -196,13 +198,27 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 };
                 let (weight, shows_patches) = (passed * weight, before.shows_patches && keeps);
                 let counted = before.counted.after(kind);
-                let ray = OpenRay { weight, dir, side, kind, shows_patches, counted, ..ray };
+                let density = match kind {
+                    RayKind::Reflected if aims && !surface.is_in_medium(object, lane) => {
+                        surface.facets.get(lane).map(|facets| facets.density_of(dir))
+                    }
+                    RayKind::Scattered => Some(dir.dot(surface.smooth_normal(lane)) / PI),
+                    _ => None,
+                };
+                let density = density.unwrap_or(f64::INFINITY);
+                let ray = OpenRay { weight, dir, side, kind, shows_patches, counted, density, ..ray };
                 (weight != Rgb::ZERO).then_some(ray)
             };
             let goes_on = scatters && before.bounces < self.plan.camera.bounces;
             let scattered = if goes_on { self.scattered(group, surface, lane, before.depth) } else { None };
+            let passed_by_coat = |dir: DVec3| {
+                let coat = object.material.coat();
+                coat.map_or(1.0, |coat| surface.passed_by_coat(coat, lane, group.dir.get(lane), dir))
+            };
             let scattered = scattered
-                .and_then(|dir| open(kept * diffuse.get(lane), dir, side, RayKind::Scattered))
+                .and_then(|dir| {
+                    open(kept * passed_by_coat(dir) * diffuse.get(lane), dir, side, RayKind::Scattered)
+                })
                 .map(|ray| OpenRay { bounces: before.bounces + 1, ..ray });
             scratch.outcomes[place].onward = [
                 onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),

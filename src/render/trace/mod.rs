@@ -6,6 +6,7 @@
 //! one. A ray's colour does not depend on the other rays of its packet.
 
 mod adaptive;
+mod aim;
 mod arrays;
 mod budget;
 mod certain;

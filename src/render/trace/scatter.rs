@@ -4,7 +4,7 @@
 //! the cosine of its angle. Lamps and skies that light are met by aim: they are [direct light](super::direct_light).
 //! What comes from other surfaces is met by one ray in a direction that the sample draws with a density of the cosine
 //! over pi, so that its light counts `d` times. The ray counts neither lamps nor skies again, nor ambient light, which
-//! stands in for light from everywhere. Shadow rays pass through glass in straight lines, so lamps behind glass are met
+//! stands in for light from everywhere. What objects emit is met by chance and [by aim](super::aim). Shadow rays pass through glass in straight lines, so lamps behind glass are met
 //! by aim, too; after a mirror, no aim is possible, and what shines there counts.
 
 use super::arrays::VectorList;
@@ -45,22 +45,34 @@ impl CountedLight {
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds what an object's surface gives by itself to its ambient light, or takes its place where that does not count.
-    pub(super) fn emit(&self, object: &Object, surface: &Surface, count: usize, colours: &mut VectorList) {
+    pub(super) fn emit(
+        &self,
+        group: &RayGroup,
+        surface: &Surface,
+        distances: &[f64],
+        colours: &mut VectorList,
+    ) {
+        let object = &self.model.objects[surface.index];
         let Object { material, shader, .. } = object;
         let is_lamp = object.args.entity().kind() == Kind::Light;
-        if self.counted == CountedLight::All || self.counted == CountedLight::EmissionAndLamps && is_lamp {
-            if material.emission != Rgb::ZERO {
-                (0..count).for_each(|lane| colours.set(lane, colours.get(lane) + material.emission));
-            }
-            return;
-        }
-        for lane in 0..count {
-            let own = match (surface.look, surface.seen.get(lane)) {
-                (Some(_), _) => Rgb::ZERO,
-                (None, Some(at)) => shader.emission(at),
-                (None, None) => shader.emission(&SurfacePoint::at(surface.points.get(lane))),
+        let is_aimed_at = self.is_aimed_at(surface.index, object);
+        let shows_ambient =
+            self.counted == CountedLight::All || self.counted == CountedLight::EmissionAndLamps && is_lamp;
+        for lane in 0..group.padded() {
+            let part = if is_aimed_at {
+                let normal = surface.bent_from(lane).unwrap_or(surface.normals.get(lane));
+                self.part_by_chance(group, lane, surface.index, distances[lane], normal)
+            } else {
+                1.0
             };
-            colours.set(lane, material.emission + own);
+            let ambient = match (shows_ambient, surface.look, surface.seen.get(lane)) {
+                (true, ..) if is_lamp => part * colours.get(lane),
+                (true, ..) => colours.get(lane),
+                (false, Some(_), _) => Rgb::ZERO,
+                (false, None, Some(at)) => shader.emission(at),
+                (false, None, None) => shader.emission(&SurfacePoint::at(surface.points.get(lane))),
+            };
+            colours.set(lane, ambient + part * material.emission);
         }
     }
 
@@ -80,7 +92,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Returns whether any is not 0.
     pub(super) fn scatters(&self, group: &RayGroup, shading: &mut ShadingScratch) -> bool {
         let ShadingScratch { surface, diffuse, .. } = shading;
-        let Object { material, shader, .. } = &self.model.objects[surface.index];
+        let material = &self.model.objects[surface.index].material;
         if self.plan.camera.bounces == 0 || material.transparency == 1.0 || self.scratch.samples.is_empty() {
             return false;
         }
@@ -90,7 +102,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 diffuse.fill(count, look.diffuse);
                 look.diffuse != Rgb::ZERO
             }
-            None => shader.diffuses(self.cpu, material, surface.points(count), diffuse.resized(count)),
+            None => self.diffuses(surface, count, diffuse),
         }
     }
 
@@ -103,7 +115,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         lane: usize,
         depth: u32,
     ) -> Option<DVec3> {
-        let normal = surface.normals.get(lane);
+        let normal = surface.smooth_normal(lane);
         if normal.dot(group.dir.get(lane)) >= 0.0 {
             return None;
         }

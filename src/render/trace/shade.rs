@@ -92,23 +92,30 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let material = &object.material;
         self.find_surface(group, distances, index, surface, colours);
         let is_free = self.plan.camera.rules == Rules::Free;
-        let glints = material.glints();
-        if glints {
-            self.glint(group, surface, &mut shading.glints);
+        let (glints, roughness) = (material.glints(), material.roughness());
+        let gleams = is_free && roughness != 0.0 && self.aims();
+        match glints {
+            true => self.glint(group, surface, &mut shading.glints),
+            false if gleams => shading.glints.fill(count, Rgb::ZERO),
+            false => {}
+        }
+        if let Some(interface) = material.interface.as_deref().filter(|_| gleams) {
+            self.gleam(group, surface, interface, &mut shading.glints);
         }
         // Where a surface keeps no light of its own, lamps make no difference.
         if !is_free || material.transparency != 1.0 {
             self.illuminate(group, surface, colours);
+            self.glow(group, shading, colours);
         }
+        let surface = &mut shading.surface;
         if !is_free {
             light::fade(cpu, &surface.travelled[..count], colours.resized(count));
         }
         if W::SEES {
             let (point, travelled) = (surface.points.get(0), surface.travelled[0]);
-            let hit = Hit { index, object, distance: distances[0], point };
+            let hit = Hit { index, object, distance: shading.distances[0], point };
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
         }
-        let roughness = material.roughness();
         if roughness != 0.0 {
             self.draw_facets(group, surface, roughness);
         }
@@ -125,7 +132,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
             }
         }
-        if glints {
+        if glints || gleams {
             (0..count).for_each(|lane| colours.set(lane, colours.get(lane) + shading.glints.get(lane)));
         }
         for (lane, passed) in shading.surface.passed.iter().enumerate() {
@@ -148,6 +155,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let object = &self.model.objects[index];
         let Object { material, shape, shader, .. } = object;
         surface.index = index;
+        surface.facets.clear();
         let travelled = resized(&mut surface.travelled, count);
         travelled.copy_from_slice(&group.travelled[..count]);
         let mixed_errors = if surface.objects.is_empty() {
@@ -175,7 +183,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let patches =
             window.map(|window| SeenPatches { dir: group.dir.view(count), window, are_shown: &are_shown });
         surface.see(object, count, patches);
-        surface.look = shader.uniform(material);
+        surface.look = shader.uniform(material).map(|look| material.coated(look));
         surface.is_mirror = match surface.look {
             Some(look) => {
                 colours.fill(count, look.ambient);
@@ -189,7 +197,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
         };
         if self.counted != CountedLight::All || material.emission != Rgb::ZERO {
-            self.emit(object, surface, count, colours);
+            self.emit(group, surface, distances, colours);
+        } else if self.depth != 0 && self.is_aimed_at(index, object) {
+            self.emit(group, surface, distances, colours);
         }
         if self.scratch.path_hashes.is_on {
             let nearest = (self.depth == 0).then_some(distances);

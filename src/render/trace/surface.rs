@@ -1,9 +1,11 @@
 //! The points where the rays of a packet hit one object, and the rays that continue from there.
 
 use super::arrays::VectorList;
+use super::facets::Facets;
 use super::light::{Colours, Reflectivities};
 use super::tree::OpenRay;
 use glam::DVec3;
+use tabray_world::coat::Coat;
 use tabray_world::coincidence;
 use tabray_world::geometry::ray::Side;
 use tabray_world::interface::{Crossing, Interface};
@@ -45,6 +47,8 @@ pub(super) struct Surface {
     pub specular: VectorList,
     /// Whether the specular reflectivity is not 0 at any point.
     pub is_mirror: bool,
+    /// The facets that are seen at each point, if the surface is rough and they have been drawn.
+    pub facets: Vec<Facets>,
     /// The fraction of light that passes from each point to the start of its ray; empty if all does.
     pub passed: Vec<Rgb>,
 }
@@ -152,6 +156,23 @@ impl Surface {
         self.sides[..count].iter_mut().for_each(|side| *side = side.opposite());
     }
 
+    /// Returns the unit normal with which a point is shaded, before facets are drawn.
+    pub fn smooth_normal(&self, lane: usize) -> DVec3 {
+        self.facets.get(lane).map_or_else(|| self.normals.get(lane), Facets::normal)
+    }
+
+    /// Returns the fraction of light that passes through a coat from a direction to the body, and from there to the start
+    /// of a ray that hits a point along `dir`.
+    pub fn passed_by_coat(&self, coat: &Coat, lane: usize, dir: DVec3, from: DVec3) -> f64 {
+        let normal = self.smooth_normal(lane);
+        coat.passed(from.dot(normal)) * coat.passed(-dir.dot(normal))
+    }
+
+    /// Tells whether rays leave a point inside of a medium that absorbs light.
+    pub fn is_in_medium(&self, object: &Object, lane: usize) -> bool {
+        self.sides[lane] == Side::Inside && object.material.medium().is_some()
+    }
+
     /// Returns the tint of the object of this surface at a point, as it is seen.
     pub fn tint(&self, object: &Object, lane: usize) -> Rgb {
         object.tint(&object.surface_point(self.points.get(lane), self.sides[lane]))
@@ -160,13 +181,8 @@ impl Surface {
     /// Returns how rays along `dir` cross the surface, by its interface.
     pub fn crossings(&self, interface: &dyn Interface, dir: View) -> Vec<Crossing> {
         let crossing = |lane: usize| {
-            let (dir, side) = (dir.get(lane), self.sides[lane]);
-            let cross = |normal| interface.cross(dir, facing(normal, dir), side);
-            let crossing = cross(self.normals.get(lane));
-            // Bent normals may lead a ray back to the side from which it comes.
-            let Some(geometric) = self.bent_from(lane) else { return crossing };
-            let is_through = |onward: DVec3| onward.dot(geometric) * dir.dot(geometric) > 0.0;
-            if crossing.onward.is_none_or(is_through) { crossing } else { cross(geometric) }
+            let normals = [self.normals.get(lane), self.bent_from(lane).unwrap_or(self.normals.get(lane))];
+            crossing(interface, dir.get(lane), normals, self.sides[lane])
         };
         (0..dir.len()).map(crossing).collect()
     }
@@ -216,6 +232,20 @@ impl Surface {
             None => Colours::Each(self.specular.view(count)),
         }
     }
+}
+
+/// Returns how a ray along `dir` crosses an interface, given the bent normal and that of the surface itself.
+pub(super) fn crossing(
+    interface: &dyn Interface,
+    dir: DVec3,
+    [normal, geometric]: [DVec3; 2],
+    side: Side,
+) -> Crossing {
+    let cross = |normal| interface.cross(dir, facing(normal, dir), side);
+    let crossing = cross(normal);
+    // Bent normals may lead a ray back to the side from which it comes.
+    let is_through = |onward: DVec3| onward.dot(geometric) * dir.dot(geometric) > 0.0;
+    if normal == geometric || crossing.onward.is_none_or(is_through) { crossing } else { cross(geometric) }
 }
 
 /// Returns the unit normal that faces a direction.

@@ -72,6 +72,9 @@ pub(super) struct OpenRay {
     pub bounces: u32,
     /// The light that counts where it ends.
     pub counted: CountedLight,
+    /// The density of its direction, per unit of solid angle, if lamps are also met by aim from where it starts;
+    /// infinite otherwise.
+    pub density: f64,
 }
 
 impl OpenRay {
@@ -80,7 +83,9 @@ impl OpenRay {
         let side = usize::from(self.side == Side::Inside);
         let LightRange { low, high } = match (self.kind, self.counted) {
             (RayKind::Scattered, _) => depth.scattered[self.bounces as usize - 1],
-            (_, CountedLight::All) => depth.ranges[self.object as usize][side],
+            (_, CountedLight::All) if self.density == f64::INFINITY => {
+                depth.ranges[self.object as usize][side]
+            }
             (_, _) => depth.ranges[self.object as usize][side].down_to_black(),
         };
         let [one, other] = [low, high].map(|light| times(self.weight, light));
@@ -106,6 +111,7 @@ impl OpenRay {
             shows_patches: true,
             bounces: 0,
             counted: CountedLight::All,
+            density: f64::INFINITY,
         }
     }
 }

@@ -5,6 +5,7 @@ use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
+use tabray_world::luminous::Luminous;
 
 /// The reason why a surface is not closed that the faces of its box would close: [`Implicit::why_not_closed`].
 pub const CUT_BY_BOX: &str = "its box may cut its surface";
@@ -57,6 +58,11 @@ pub trait Implicit: Send + Sync {
     /// Returns the reason why the surface is not closed, or `None` for a closed surface within its box.
     fn why_not_closed(&self) -> Option<&'static str> {
         Some("it has no inside")
+    }
+
+    /// Returns the whole surface as rays aim at it where it gives light; `None` where only chance is to meet it.
+    fn luminous(&self) -> Option<Luminous> {
+        None
     }
 
     /// Returns the height of a prism or cylinder that ends in the planes at y = 0 and at this height. Returns `None`

@@ -23,6 +23,7 @@ use tabray_world::geometry::facet::Facet;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use tabray_world::geometry::sight::{Line, Sight};
 use tabray_world::hittable::{Facts, Hittable, Sides, SurfaceHit};
+use tabray_world::luminous::{Luminous, Triangles};
 use tabray_world::packets::shape::HitQueries;
 use tabray_world::simd::cpu::Cpu;
 use tabray_world::text;
@@ -161,6 +162,11 @@ impl<A: NotClassic> Hittable for Mesh<A> {
     fn clearance(&self, from: DVec3) -> Option<f64> {
         let nearest = self.surface.nearest(from).0;
         Some((nearest - SLACK * (from.abs().max_element() + self.surface.max_coordinate())).max(0.0))
+    }
+
+    fn luminous(&self) -> Option<Luminous> {
+        let faces = (0..self.surface.face_count()).map(|face| self.surface.corners(face));
+        Some(Luminous::Triangles(Triangles::new(faces)))
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {

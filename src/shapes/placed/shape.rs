@@ -13,6 +13,7 @@ use tabray_world::geometry::placement::Placement;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side};
 use tabray_world::geometry::sight::Sight;
 use tabray_world::hittable::{Curvature, Facts, Hittable, SurfaceHit};
+use tabray_world::luminous::Luminous;
 use tabray_world::packets::shape::HitQueries;
 
 /// A copy of an object's shape.
@@ -275,6 +276,11 @@ impl Hittable for Placed {
 
     fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
         self.body.shape.search_cost(&self.object_ray(ray).0, origin_side)
+    }
+
+    fn luminous(&self) -> Option<Luminous> {
+        let to_world = self.to_object_space.inverse();
+        self.body.shape.luminous()?.mapped(to_world, self.placement.translation)
     }
 
     fn method(&self) -> String {

@@ -3,6 +3,7 @@
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 use std::path::Path;
 use tabray_core::geometry::ray::Side;
 use tabray_core::scene::model::Model;
@@ -237,12 +238,18 @@ fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut
     let cosine = if emitter.has_highlights() { 1.0 } else { toward.dot(normal).max(0.0) };
     let is_bounded =
         light.brightest().is_none_or(|most| (cosine * sent).abs().cmple((1.0 + 1e-9) * most.abs()).all());
-    if toward.is_normalized() && distance >= 0.0 && sent.is_finite() && is_bounded {
+    let density = emitter.density(at, toward, distance).zip(light.emissivity(at));
+    let agrees = density.is_none_or(|(density, radiance)| {
+        (PI * density * sent).abs_diff_eq(radiance, 1e-4 * radiance.abs().max_element())
+    });
+    if toward.is_normalized() && distance >= 0.0 && sent.is_finite() && is_bounded && agrees {
         return Ok(());
     }
     let most = light.brightest();
+    let density = density.map(|(density, _)| density);
     let found = format!(
-        "{at}, with the normal {normal}, sees it at {numbers} as {sample:?}; `brightest` is {most:?}"
+        "{at}, with the normal {normal}, sees it at {numbers} as {sample:?}; `brightest` is {most:?}, and `density` \
+         {density:?}"
     );
     Err(Promise::LightIsFinite.fault(found))
 }
@@ -260,7 +267,11 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
 pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
     let Material { ambient, emission, diffuse, specular, shininess, transparency, interface } = material;
     let is_finite = [ambient, emission, diffuse, specular].iter().all(|colour| colour.is_finite());
-    if !is_finite || emission.min_element() < 0.0 || !shininess.is_finite() || !(0.0..=1.0).contains(transparency) {
+    if !is_finite
+        || emission.min_element() < 0.0
+        || !shininess.is_finite()
+        || !(0.0..=1.0).contains(transparency)
+    {
         return Err(Promise::ReflectivityIsSound.fault(format!("it is {material:?}")));
     }
     let Some(interface) = interface else { return Ok(()) };

@@ -66,6 +66,7 @@ pub(crate) use branch::{MANY, STEPS, step};
 pub use range::LightRange;
 pub(crate) use surface::clearance;
 
+use super::glow;
 use crate::limits::MAX_DIST;
 use solve::VisibleSurfaces;
 use surface::{BoundedLight, SurfaceLight};
@@ -174,7 +175,7 @@ fn surfaces(
     background: f64,
 ) -> (Vec<SurfaceLight>, Vec<f64>) {
     let surfaces = SurfaceLight::all(model, looks, of);
-    let scattered = scattered(model, &surfaces, background);
+    let scattered = scattered(model, &surfaces, background, of.largest(glow::brightest(model)));
     let surfaces = match scattered.first() {
         Some(most) => surfaces.into_iter().map(|surface| surface.lit_by(*most)).collect(),
         None => surfaces,
@@ -186,7 +187,8 @@ fn surfaces(
 /// does not bounce.
 ///
 /// Rays return at most `first`, if no matt surface passes on light, and `factor` times what each matt surface receives.
-fn scattered(model: &Model, surfaces: &[SurfaceLight], background: f64) -> Vec<f64> {
+/// Besides the ray, it receives at most `aimed` from what it aims at; the bounds include that.
+fn scattered(model: &Model, surfaces: &[SurfaceLight], background: f64, aimed: f64) -> Vec<f64> {
     let bounces = model.camera.value.bounces as usize;
     if bounces == 0 {
         return Vec::new();
@@ -196,14 +198,17 @@ fn scattered(model: &Model, surfaces: &[SurfaceLight], background: f64) -> Vec<f
     };
     let first = most(surfaces.to_vec(), background);
     let factor = most(surfaces.iter().map(SurfaceLight::only_scattering).collect(), 0.0);
-    let mut all = vec![first; bounces];
+    let mut all = vec![first + aimed; bounces];
     for index in (1..bounces).rev() {
-        all[index - 1] = first + sides::gain(factor, all[index]);
+        all[index - 1] = first + aimed + sides::gain(factor, all[index]);
     }
     all
 }
 
 /// Returns each object's brightest look, if it has one.
 fn looks(model: &Model) -> Vec<Option<Look>> {
-    model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect()
+    let brightest = |Object { shader, material, .. }: &Object| {
+        shader.brightest(material).map(|look| material.coated(look))
+    };
+    model.objects.iter().map(brightest).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::branch::{Branch, ContinuationBounds, FAINT, REFLECTED};
 use super::sides::{Sides, above, gain};
+use crate::plan::glow;
 use glam::DVec3;
 use tabray_world::geometry::aabb;
 use tabray_world::material::{Look, Rgb};
@@ -24,7 +25,7 @@ pub(super) struct BoundedLight {
 
 impl BoundedLight {
     /// Returns the magnitude of a colour.
-    fn largest(self, colour: Rgb) -> f64 {
+    pub fn largest(self, colour: Rgb) -> f64 {
         self.channel.map_or(colour.abs().max_element(), |channel| colour[channel].abs())
     }
 }
@@ -65,7 +66,7 @@ impl SurfaceLight {
             .map(|((object, look), tint)| {
                 let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, of, any_light_comes));
                 let mut own = gain(1.0 - object.material.transparency, own) * ROUNDING;
-                if object.material.glints() {
+                if object.material.interface.is_some() {
                     own += glints(model, object, of, any_light_comes) * ROUNDING;
                 }
                 let (is_split, is_free) = (object.material.interface.is_some(), rules == Rules::Free);
@@ -173,12 +174,17 @@ fn own(model: &Model, object: &Object, look: &Look, of: BoundedLight, any_light_
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let given = look.ambient.abs() + object.material.emission.abs();
     let ambient = if of.light.is_some() { Rgb::ZERO } else { given };
-    scattered(model, object, ambient, [look.diffuse.abs(), highlight], of, any_light_comes)
+    scattered(model, object, ambient, [look.diffuse.abs(), highlight, Rgb::ZERO], of, any_light_comes)
 }
 
-/// Bounds the highlights of a surface that are no part of its own light, as [`own`] does.
+/// Bounds the highlights of a surface that are no part of its own light, and the light of lamps that its facets mirror by
+/// aim, as [`own`] does.
 fn glints(model: &Model, object: &Object, of: BoundedLight, any_light_comes: bool) -> f64 {
-    scattered(model, object, Rgb::ZERO, [Rgb::ZERO, Rgb::ONE], of, any_light_comes)
+    // What facets mirror of a light by aim is no brighter than its surface, and samples may be twice as bright.
+    let gleam = if object.material.roughness() == 0.0 { Rgb::ZERO } else { Rgb::ONE };
+    let highlight = if object.material.glints() { Rgb::ONE } else { Rgb::ZERO };
+    let emitted = if of.light.is_some() { Rgb::ZERO } else { gleam * glow::brightest(model) };
+    scattered(model, object, emitted, [Rgb::ZERO, highlight, gleam], of, any_light_comes)
 }
 
 /// Bounds the ambient light of an object and the light of lamps that it scatters, given its largest reflectivities.
@@ -186,14 +192,14 @@ fn scattered(
     model: &Model,
     object: &Object,
     ambient: Rgb,
-    [diffuse, highlight]: [Rgb; 2],
+    [diffuse, highlight, gleam]: [Rgb; 3],
     of: BoundedLight,
     any_light_comes: bool,
 ) -> f64 {
     let mut own = ambient;
     let lights = of.light.map_or(&model.lights[..], |only| std::slice::from_ref(&model.lights[only]));
     for light in lights {
-        if highlight == Rgb::ZERO && diffuse == Rgb::ZERO {
+        if highlight == Rgb::ZERO && diffuse == Rgb::ZERO && gleam == Rgb::ZERO {
             break;
         }
         let Some(sent) = light.value.brightest().filter(|_| any_light_comes) else { return f64::INFINITY };
@@ -201,7 +207,7 @@ fn scattered(
         // than the centre.
         let clearance = || clearance(object, light.value.location());
         own += match (light.value.emitter(), model.camera.value.rules) {
-            (Some(emitter), _) if !emitter.has_highlights() => sent.abs() * diffuse,
+            (Some(emitter), _) if !emitter.has_highlights() => sent.abs() * (diffuse + gleam),
             (Some(_), _) => sent.abs() * (diffuse + highlight),
             (None, Rules::Free) => {
                 sent.abs() * light.value.fading.factor(clearance()) * (diffuse + highlight)

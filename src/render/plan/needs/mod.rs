@@ -288,7 +288,8 @@ impl KnownScene<'_> {
         let (Some(sent), Some(look)) = (light.brightest(), look) else { return false };
         let shines = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular };
         let is_matt_black = sent * look.diffuse == Rgb::ZERO && sent * shines == Rgb::ZERO;
-        if object.material.glints() && sent != Rgb::ZERO {
+        let is_mirrored = object.material.roughness() != 0.0 && super::lamps::is_aimed_at(light);
+        if (object.material.glints() || is_mirrored) && sent != Rgb::ZERO {
             return false;
         }
         // Where rays continue, shadow rays count toward the limit of rays, so even black ones may make a difference.
