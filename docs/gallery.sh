@@ -13,7 +13,7 @@ if [ -z "${TABRAY:-}" ]; then
     TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/release/tabray")
 fi
 for shape in implicit lathe box cylinder capsule disc polygon prism union intersection difference \
-    tiles rainbow checker image faces formula bumps glass metal background sky environment \
+    tiles rainbow checker image faces formula bumps glass metal plastic background sky environment \
     look_at orthographic fisheye thin_lens; do
     samples=16
     [ "$shape" != thin_lens ] || samples=256
