@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The pictures of docs/gallery.md, one for each type of object, shader, material, background and camera that it shows:
-# 320 x 240 pixels, 16 samples in each, and 256 through a lens.
+# 320 x 240 pixels, 16 samples in each, and 256 through a lens and under a lamp with a size.
 #
 #     bash docs/gallery.sh
 #
@@ -16,7 +16,7 @@ for shape in implicit lathe box cylinder capsule disc polygon prism union inters
     tiles rainbow checker image faces formula bumps glass metal plastic background sky environment \
     look_at orthographic fisheye thin_lens; do
     samples=16
-    [ "$shape" != thin_lens ] || samples=256
+    case $shape in thin_lens | plastic) samples=256 ;; esac
     "$TABRAY" render "scenes/entities/$shape.ray" --size 320x240 --samples "$samples" -o "docs/gallery/$shape.png"
 done
 "$TABRAY" render scenes/glass/bubbles.ray --size 320x240 --samples 16 -o docs/gallery/bubbles.png

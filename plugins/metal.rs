@@ -1,5 +1,6 @@
 //! Metal: a coloured mirror that reflects more of the light that grazes it.
 
+use super::material::EMISSION;
 use tabray::prelude::*;
 
 static REFLECTANCE: Pparm<Rgb> = Pparm::or(
@@ -18,12 +19,13 @@ static ROUGHNESS: Pparm<f64> =
         .between(0.0, 1.0)
         .not_dumped();
 
-const TABLE: Table = &[&REFLECTANCE, &SHININESS, &ROUGHNESS];
+const TABLE: Table = &[&REFLECTANCE, &SHININESS, &ROUGHNESS, &EMISSION];
 
 inventory::submit! {
     Entity::material("metal", "a coloured mirror that reflects more of the light that grazes it", &[TABLE], |args| {
         let colour = args.get(&REFLECTANCE);
         Ok(Material {
+            emission: args.get(&EMISSION),
             specular: colour,
             shininess: args.get(&SHININESS),
             interface: Some(AnyInterface::new(Metal { colour, roughness: args.get(&ROUGHNESS) })),
