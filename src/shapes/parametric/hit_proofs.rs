@@ -24,7 +24,11 @@ use tabray_world::packets::shape::HitQueries;
 const MAX_NORMALS: usize = 256;
 
 impl ParametricShape {
-    fn proven_hit<F: Float>(&self, line: &Line<Interval<F>>, leaves: bool) -> (HitEnclosure<F>, usize)
+    pub(super) fn proven_hit<F: Float>(
+        &self,
+        line: &Line<Interval<F>>,
+        leaves: bool,
+    ) -> (HitEnclosure<F>, usize)
     where
         dyn Patches: PatchesIn<F>,
     {
@@ -38,7 +42,7 @@ impl ParametricShape {
             start.set(Some(known));
             meet(&known, place)
         };
-        match (Search { shape: self, line, is_left_out: &is_left_out }).first() {
+        match Search::new(self, line, &is_left_out).first() {
             Found { hit: None, undecided: None, .. } => (HitEnclosure::Misses, 0),
             Found { hit: Some(hit), .. } if !self.is_on(line, &hit) => {
                 (HitEnclosure::Doubtful(F::of(0.0)), 0)

@@ -8,10 +8,13 @@
 //! D. Toth, "On Ray Tracing Parametric Surfaces", SIGGRAPH 1985.
 
 mod hit_proofs;
+mod krawczyk;
 mod locate;
 mod patch;
 mod search;
 mod shape;
+#[cfg(test)]
+mod tests;
 mod tree;
 
 pub use patch::Parametric;
@@ -65,7 +68,7 @@ impl ParametricShape {
             };
             range.origin_side.is_some() && leaves()
         };
-        let search = Search { shape: self, line: &line, is_left_out: &is_left_out };
+        let search = Search::new(self, &line, &is_left_out);
         let Found { hit, undecided, narrow } = search.first();
         let narrow = narrow.map_or(MISS, |t| t.middle());
         let distance = range.keep(hit.map_or(narrow, |hit| hit.t.middle().min(narrow)));
@@ -125,7 +128,7 @@ impl ScalarIntersect for ParametricShape {
             per_axis(|axis| Interval::point(at[axis]) + Interval { low: -error, high: error })
         };
         let line = Line { origin: about(ray.origin, ray.drift.origin), dir: about(ray.dir, ray.drift.dir) };
-        match (Search { shape: self, line: &line, is_left_out: &|_, _, _| false }).first() {
+        match Search::new(self, &line, &|_, _, _| false).first() {
             Found { hit: None, undecided: None, .. } => Bracket::MISS,
             Found { hit: Some(hit), undecided, .. }
                 if !hit.is_edge && undecided.is_none_or(|from| from > hit.t.high) =>

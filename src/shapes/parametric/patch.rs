@@ -2,7 +2,7 @@
 
 use f256::f256;
 use glam::DVec3;
-use tabray_exact::dual::Dual;
+use tabray_exact::gradient::Gradient;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::Scalar;
 
@@ -43,13 +43,11 @@ pub(super) trait PatchesIn<F: Float> {
 }
 
 impl<T: Parametric, F: Float> PatchesIn<F> for T {
-    fn patch(&self, [u, v]: &Rectangle<F>) -> Patch<F> {
-        let of = |one: [Dual<Interval<F>>; 2]| self.point(one);
-        let along_u = of([Dual::variable(*u), Dual::fixed(*v)]);
-        let along_v = of([Dual::fixed(*u), Dual::variable(*v)]);
+    fn patch(&self, part: &Rectangle<F>) -> Patch<F> {
+        let point = self.point(Gradient::point(*part));
         Patch {
-            at: along_u.map(|along| along.value),
-            along: [along_u, along_v].map(|along| along.map(|axis| axis.slope)),
+            at: point.map(|axis| axis.value),
+            along: [0, 1].map(|side| point.map(|axis| axis.slopes[side])),
         }
     }
 
@@ -70,10 +68,9 @@ pub(super) trait Patches: PatchesIn<f64> + PatchesIn<f256> + Send + Sync {
 
 impl<T: Parametric> Patches for T {
     fn at(&self, [u, v]: [f64; 2]) -> [DVec3; 3] {
-        let along_u = self.point([Dual::variable(u), Dual::constant(v)]);
-        let along_v = self.point([Dual::constant(u), Dual::variable(v)]);
-        let of = |of: [Dual; 3], part: fn(Dual) -> f64| DVec3::from(of.map(part));
-        [of(along_u, |of| of.value), of(along_u, |of| of.slope), of(along_v, |of| of.slope)]
+        let point = self.point(Gradient::<f64, 2>::point([u, v]));
+        let along = |side: usize| DVec3::from(point.map(|axis| axis.slopes[side]));
+        [DVec3::from(point.map(|axis| axis.value)), along(0), along(1)]
     }
 }
 

@@ -1,8 +1,10 @@
 //! The first hit of a line and a parametric surface.
 
+use super::krawczyk::Judged;
 use super::patch::{Patch, Patches, PatchesIn, Rectangle};
 use super::shape::ParametricShape;
 use super::tree::Flat;
+use std::cell::Cell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use tabray_exact::double_double::power_of_two;
@@ -14,12 +16,10 @@ use tabray_world::geometry::sight::Line;
 /// The maximum number of examined parts of the rectangle for a line.
 const MAX_PATCHES: usize = 2048;
 
-/// The margin by which a part is enlarged on each side before the test, as a fraction of its width. With it, a solution
-/// at a side of a part is proven like any other.
-const MARGIN: f64 = 0.125;
-
-/// The maximum number of steps to narrow the enclosure of a solution.
-const STEPS: usize = 40;
+/// Returns the maximum number of steps of Krawczyk's method for a line. In 237 bits, each takes some thirty times as long.
+fn max_steps<F: Float>() -> usize {
+    if F::IS_LONG { 1024 } else { 2304 }
+}
 
 /// The maximum width of the t of an undecided place at which the place counts as a hit, as a fraction of the
 /// coordinates.
@@ -29,11 +29,13 @@ pub(super) type LeavesOut<'s, F> = dyn Fn(Interval<F>, &Rectangle<F>, bool) -> b
 
 /// A search for the first hit with t > 0.
 pub(super) struct Search<'s, F: Float> {
-    pub shape: &'s ParametricShape,
-    pub line: &'s Line<Interval<F>>,
+    pub(super) shape: &'s ParametricShape,
+    line: &'s Line<Interval<F>>,
     /// Tells whether a hit does not count, given its t, the place of its u and v, and whether the place certainly has a
     /// hit.
-    pub is_left_out: &'s LeavesOut<'s, F>,
+    is_left_out: &'s LeavesOut<'s, F>,
+    /// The number of steps of Krawczyk's method that are left.
+    pub(super) steps_left: Cell<usize>,
 }
 
 /// A hit.
@@ -87,20 +89,18 @@ impl<F> PartialEq for Part<F> {
 
 impl<F> Eq for Part<F> {}
 
-/// The result of the test of a part.
-enum Judged<F> {
-    /// The part has no hit.
-    Free,
-    /// The part has at most one hit, in this narrower place, which may extend beyond the part.
-    One(Rectangle<F>),
-    /// All hits of the part are in this place.
-    In(Rectangle<F>),
-}
-
-impl<F: Float> Search<'_, F>
+impl<'s, F: Float> Search<'s, F>
 where
     dyn Patches: PatchesIn<F>,
 {
+    pub fn new(
+        shape: &'s ParametricShape,
+        line: &'s Line<Interval<F>>,
+        is_left_out: &'s LeavesOut<'s, F>,
+    ) -> Self {
+        Self { shape, line, is_left_out, steps_left: Cell::new(max_steps::<F>()) }
+    }
+
     pub fn first(&self) -> Found<F> {
         // All parts would be tried: the numbers of such a line are too large for the box test in `f64`.
         if let Some(Aabb { low, high }) = self.shape.tree.bounds() {
@@ -115,7 +115,7 @@ where
         let (mut waiting, mut number) = (BinaryHeap::new(), 0);
         // Tests in `f64` are faster, and come first.
         let line = Line { origin: self.line.origin.map(nearly), dir: self.line.dir.map(nearly) };
-        let quick = Search { shape: self.shape, line: &line, is_left_out: &|_, _, _| false };
+        let quick = Search::<f64>::new(self.shape, &line, &|_, _, _| false);
         let clip = |around: &Aabb| line.clip(around.low, around.high);
         self.shape.tree.visit(&|around| clip(around).is_some(), &mut |leaf, part, around| {
             let is_free = !quick.may_meet(self.shape.tree.flat(leaf))
@@ -129,10 +129,12 @@ where
         let mut found = Found { hit: None, undecided: None, narrow: None };
         let mut left = (if F::IS_LONG { MAX_PATCHES / 32 } else { MAX_PATCHES }).max(2 * number);
         while let Some(Part { from, leaf, part, .. }) = waiting.pop() {
-            if found.hit.is_some_and(|hit: Hit<F>| F::of(from) > hit.t.high) {
+            // Nothing that waits comes before what is known, or may be a hit.
+            let is_behind = |t: Interval<F>| F::of(from) > t.high;
+            if found.hit.is_some_and(|hit: Hit<F>| is_behind(hit.t)) || found.narrow.is_some_and(is_behind) {
                 break;
             }
-            if left == 0 {
+            if left == 0 || self.steps_left.get() == 0 {
                 found.doubt(F::of(from));
                 self.note_narrow(&mut found, self.t(&self.shape.patches.points(&part)), &part);
                 break;
@@ -269,99 +271,19 @@ where
     }
 
     /// Returns the left sides of the equations of two planes through the line.
-    fn off(&self, at: &[Interval<F>; 3]) -> [Interval<F>; 2] {
+    pub(super) fn off(&self, at: &[Interval<F>; 3]) -> [Interval<F>; 2] {
         let from = [0, 1, 2].map(|axis| at[axis] - self.line.origin[axis]);
         self.across(&from)
     }
 
     /// Returns the components of a vector along the normals of these planes.
-    fn across(&self, vector: &[Interval<F>; 3]) -> [Interval<F>; 2] {
+    pub(super) fn across(&self, vector: &[Interval<F>; 3]) -> [Interval<F>; 2] {
         let ([axis, one, other], dir) = (self.axes(), &self.line.dir);
         [one, other].map(|side| vector[side] * dir[axis] - vector[axis] * dir[side])
     }
 
-    /// Tests a part by Krawczyk's test, and narrows it as long as that helps.
-    fn judged(&self, part: &Rectangle<F>) -> Judged<F> {
-        let mut place = *part;
-        for _ in 0..STEPS {
-            let wide = place.map(|side| {
-                let margin = F::of(MARGIN) * side.width();
-                side + Interval { low: -margin, high: margin }
-            });
-            let patch = self.shape.patches.patch(&wide);
-            // The comparisons are false for NaN, where the surface is undefined beyond the ends of u and v.
-            if self.off(&patch.at).iter().any(|value| value.low > F::of(0.0) || value.high < F::of(0.0)) {
-                return Judged::Free;
-            }
-            let Some(image) = self.image(&wide, &patch) else { return Judged::In(place) };
-            if image.iter().zip(&wide).all(|(image, wide)| wide.low < image.low && image.high < wide.high) {
-                return Judged::One(self.narrowed(image));
-            }
-            let mut next = place;
-            for axis in 0..2 {
-                let (low, high) =
-                    (place[axis].low.max(image[axis].low), place[axis].high.min(image[axis].high));
-                if low > high {
-                    return Judged::Free;
-                }
-                next[axis] = Interval { low, high };
-            }
-            let shrinks = |axis: usize| next[axis].width() < F::of(0.7) * place[axis].width();
-            let goes_on = shrinks(0) || shrinks(1);
-            place = next;
-            if !goes_on || !self.is_wide(&place) {
-                break;
-            }
-        }
-        Judged::In(place)
-    }
-
-    /// Narrows the enclosure of a single solution.
-    fn narrowed(&self, mut place: Rectangle<F>) -> Rectangle<F> {
-        for _ in 0..STEPS {
-            let patch = self.shape.patches.patch(&place);
-            let Some(image) = self.image(&place, &patch) else { break };
-            let mut next = place;
-            for axis in 0..2 {
-                next[axis].low = place[axis].low.max(image[axis].low);
-                next[axis].high = place[axis].high.min(image[axis].high);
-            }
-            let is_narrower = (0..2).any(|axis| next[axis].width() < F::of(0.9) * place[axis].width());
-            place = next;
-            if !is_narrower {
-                break;
-            }
-        }
-        place
-    }
-
-    /// Returns the image of a place by Krawczyk's operator. All solutions in the place are in the image. If the image
-    /// is inside the place, there is exactly one. Returns `None` if the matrix of derivatives has no inverse.
-    fn image(&self, place: &Rectangle<F>, patch: &Patch<F>) -> Option<Rectangle<F>> {
-        let n = Interval::<F>::constant;
-        let middle = place.map(|side| Interval::point(side.middle()));
-        let value = self.off(&self.shape.patches.points(&middle));
-        // The columns are the derivatives with respect to u and v.
-        let [by_u, by_v] = [0, 1].map(|side| self.across(&patch.along[side]));
-        let [[a, c], [b, d]] = [by_u, by_v].map(|of| of.map(|value| value.middle().to_f64()));
-        let determinant = a * d - b * c;
-        let inverse = [[d, -b], [-c, a]].map(|row| row.map(|value| value / determinant));
-        if !inverse.iter().flatten().all(|value| value.is_finite()) {
-            return None;
-        }
-        let image = [0, 1].map(|row| {
-            let [one, other] = inverse[row].map(n);
-            let start = middle[row] - (one * value[0] + other * value[1]);
-            let left = [by_u, by_v].map(|of| one * of[0] + other * of[1]);
-            let identity = if row == 0 { [n(1.0), n(0.0)] } else { [n(0.0), n(1.0)] };
-            let off = |side: usize| (identity[side] - left[side]) * (place[side] - middle[side]);
-            start + off(0) + off(1)
-        });
-        image.iter().all(|side| side.is_bounded()).then_some(image)
-    }
-
     /// Tells whether a place is wide enough to be cut.
-    fn is_wide(&self, place: &Rectangle<F>) -> bool {
+    pub(super) fn is_wide(&self, place: &Rectangle<F>) -> bool {
         let least = F::of(power_of_two(if F::IS_LONG { -120 } else { -40 }));
         let ends = self.shape.ends();
         (0..2).any(|axis| place[axis].width() > least * F::of(ends[axis].width()))

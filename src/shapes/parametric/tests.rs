@@ -1,0 +1,83 @@
+//! The steps that a search takes, counted by the evaluations of the surface.
+
+use super::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use tabray_exact::dual::Dual;
+use tabray_exact::scalar::Scalar;
+
+/// A torus that counts how often it is evaluated, in doubles and in 237 bits.
+struct Torus {
+    ends: [[f64; 2]; 2],
+    counts: &'static [AtomicUsize; 2],
+}
+
+impl Parametric for Torus {
+    fn point<N: Scalar>(&self, [u, v]: [N; 2]) -> [N; 3] {
+        let is_long = size_of::<N>() > size_of::<Dual<Interval>>();
+        self.counts[usize::from(is_long)].fetch_add(1, Ordering::Relaxed);
+        let out = N::constant(2.0) + v.cos();
+        [out * u.cos(), v.sin(), out * u.sin()]
+    }
+
+    fn ends(&self) -> [[f64; 2]; 2] {
+        self.ends
+    }
+}
+
+/// Where rays along -x start that touch the torus, or nearly so: at its least and greatest z, in the plane of its top, and
+/// at last along the circle where that plane touches it.
+const TOUCHING: [[f64; 3]; 7] = [
+    [10.0, 0.0, -2.999999999999999],
+    [10.0, 0.0, -3.0],
+    [10.0, 0.0, 3.0 - 1e-9],
+    [10.0, 1.0, 0.3],
+    [10.0, 1.0 - 1e-15, 0.3],
+    [10.0, 1.0, 0.0],
+    [10.0, 1.0, 2.0],
+];
+
+/// Once round, a part of the torus, and three times round, where each point has nine pairs of u and v.
+const ENDS: [[[f64; 2]; 2]; 3] =
+    [[[0.0, 6.3], [0.0, 6.3]], [[2.0, 6.8], [-0.4, 5.1]], [[-10.0, 10.0], [-10.0, 10.0]]];
+
+/// Searches along each of these rays, and returns the evaluations in doubles by the tracer and in 237 bits by a proof.
+fn evaluations() -> Vec<(String, [usize; 2])> {
+    let mut all = Vec::new();
+    for ends in ENDS {
+        let counts: &'static [AtomicUsize; 2] = Box::leak(Box::default());
+        let patches: Box<dyn Patches> = Box::new(Torus { ends, counts });
+        let tree = Tree::new(&*patches, ends);
+        let bounds = tree.bounds().expect("a box");
+        let shape = ParametricShape { patches, tree, bounds };
+        for origin in TOUCHING {
+            let ray = Ray { origin: origin.into(), dir: DVec3::NEG_X };
+            let line = Line { origin: constants(ray.origin), dir: constants(ray.dir) };
+            counts.iter().for_each(|count| count.store(0, Ordering::Relaxed));
+            shape.first_hit(&ray, &RayRange::ALL);
+            let by_tracer = counts[0].load(Ordering::Relaxed);
+            shape.proven_hit::<f256::f256>(&line, false);
+            all.push((format!("{ends:?} from {origin:?}"), [by_tracer, counts[1].load(Ordering::Relaxed)]));
+        }
+    }
+    all
+}
+
+/// A step evaluates the surface twice: its points with their derivatives, and the point in the middle. Parts that are cut,
+/// and hits, take more.
+#[test]
+fn rays_that_touch_a_surface_take_a_limited_number_of_steps() {
+    for (ray, [by_tracer, by_proof]) in evaluations() {
+        assert!(by_tracer < 7000, "{ray}: {by_tracer} evaluations");
+        assert!(by_proof < 6000, "{ray}: {by_proof} evaluations in 237 bits");
+    }
+}
+
+/// What is behind the first narrow place that may be hit needs no answer.
+#[test]
+fn a_ray_that_touches_a_surface_at_a_point_is_soon_answered() {
+    for (index, (ray, [by_tracer, _])) in evaluations().into_iter().enumerate() {
+        let (round, touching) = (index / TOUCHING.len(), index % TOUCHING.len());
+        let is_at_point = round < 2 && touching < TOUCHING.len() - 1;
+        assert!(!is_at_point || by_tracer < 1000, "{ray}: {by_tracer} evaluations");
+    }
+}
