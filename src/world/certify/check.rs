@@ -16,6 +16,12 @@ use tabray_exact::scalar::{Scalar, per_axis};
 /// The number of halvings that look for a root between two places of different signs.
 const HALVINGS: usize = 64;
 
+/// After this many halvings, ends between which the formula has grown to [`POLE`] times what it was are those of a pole.
+const SETTLED: usize = 16;
+
+/// The growth that tells a pole: one of the first order grows to 65,536 times itself meanwhile.
+const POLE: f64 = 1024.0;
+
 /// One line of this many is also tried with the equation that is searched, at one of the drawn places: what is wrong
 /// with that equation is wrong for many lines.
 const TRIED: u64 = 16;
@@ -267,13 +273,19 @@ impl<'s, F: Float> Check<'s, F> {
         let mut written: Written<f64> = self.field.written();
         let mut seen = |low: f64, high: f64| written.at(&line.at(Interval { low, high }));
         let sign = |of: Seen<f64>| of.sign().filter(|_| of.is_defined() == Some(true));
-        let (Some(before), Some(after)) = (sign(seen(low, low)), sign(seen(high, high))) else {
+        let size = |of: Seen<f64>| of.low.abs().min(of.high.abs());
+        let mut ends = [seen(low, low), seen(high, high)];
+        let [Some(before), Some(after)] = ends.map(sign) else {
             return false;
         };
         if before == after {
             return false;
         }
-        for _ in 0..HALVINGS {
+        let first = size(ends[0]).max(size(ends[1]));
+        for halving in 0..HALVINGS {
+            if halving == SETTLED && ends.iter().any(|end| size(*end) > POLE * first) {
+                return false;
+            }
             let over = seen(low, high);
             if over.is_continuous() && self.is_inside(line.at(Interval { low, high })) {
                 let condition =
@@ -283,9 +295,10 @@ impl<'s, F: Float> Check<'s, F> {
                 }
             }
             let middle = low + 0.5 * (high - low);
-            match sign(seen(middle, middle)) {
-                Some(sign) if sign == before => low = middle,
-                Some(_) => high = middle,
+            let within = seen(middle, middle);
+            match sign(within) {
+                Some(sign) if sign == before => (low, ends[0]) = (middle, within),
+                Some(_) => (high, ends[1]) = (middle, within),
                 None => return false,
             }
         }
