@@ -82,6 +82,7 @@ impl<N: Scalar, const K: usize> Mul for Gradient<N, K> {
     type Output = Self;
 
     #[inline(always)]
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule")]
     fn mul(self, other: Self) -> Self {
         apart_if!(N::IS_LONG, {
             let slope = |axis: usize| self.value * other.slopes[axis] + self.slopes[axis] * other.value;
@@ -94,6 +95,7 @@ impl<N: Scalar, const K: usize> Div for Gradient<N, K> {
     type Output = Self;
 
     #[inline(always)]
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the quotient rule")]
     fn div(self, other: Self) -> Self {
         apart_if!(N::IS_LONG, {
             let value = self.value / other.value;
