@@ -1,9 +1,9 @@
 //! Hits of rays, as arrays.
 
-use crate::arrays::{Rows, Vectors, View, numbers};
+use crate::rays::RayView;
+pub use crate::rays::Rays;
 use crate::work::{How, Progress};
-use glam::DVec3;
-use numpy::ndarray::{Array2, ArrayView1};
+use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -29,82 +29,6 @@ const TIGHT: usize = 16;
 /// its while.
 const FEW_STARTS: usize = 8;
 const ONE_IN: usize = 64;
-
-/// The rays of a query.
-pub struct Rays<'py> {
-    count: usize,
-    origins: Rows<'py>,
-    directions: Rows<'py>,
-    ends: Option<PyReadonlyArray1<'py, f64>>,
-    leaves: Option<[PyReadonlyArray1<'py, i32>; 2]>,
-}
-
-/// A view of the rays, for other threads.
-struct RayView<'a> {
-    count: usize,
-    origins: View<'a>,
-    directions: View<'a>,
-    ends: Option<ArrayView1<'a, f64>>,
-    /// The objects and the surfaces that the rays leave.
-    leaves: Option<[ArrayView1<'a, i32>; 2]>,
-}
-
-impl<'py> Rays<'py> {
-    /// Takes the arrays of rays.
-    pub fn of(
-        origins: &Bound<'py, PyAny>,
-        directions: &Bound<'py, PyAny>,
-        t_max: Option<&Bound<'py, PyAny>>,
-        leaves: Option<&Bound<'py, Hits>>,
-    ) -> PyResult<Self> {
-        let [from, along] = [Vectors::of(origins, "origins")?, Vectors::of(directions, "directions")?];
-        let count = match (from.count(), along.count()) {
-            (Some(one), Some(other)) if one != other => {
-                return Err(PyValueError::new_err(format!(
-                    "there are {one} origins and {other} directions: give as many of both, or one for all"
-                )));
-            }
-            (one, other) => one.or(other).unwrap_or(1),
-        };
-        let leaves = leaves.map(|hits| hits.get().starts(hits.py(), count)).transpose()?;
-        let ends = t_max.map(|ends| numbers(ends, "t_max", count)).transpose()?;
-        Ok(Self { count, origins: from.rows(count)?, directions: along.rows(count)?, ends, leaves })
-    }
-
-    fn view(&self) -> RayView<'_> {
-        let ends = self.ends.as_ref().map(|ends| ends.as_array());
-        let leaves = self.leaves.as_ref().map(|leaves| leaves.each_ref().map(PyReadonlyArray1::as_array));
-        let (origins, directions) = (self.origins.view(), self.directions.view());
-        RayView { count: self.count, origins, directions, ends, leaves }
-    }
-}
-
-impl RayView<'_> {
-    /// Returns a ray with the t of its end, or a message about its fault.
-    fn ray(&self, query: &Query, index: usize) -> Result<Ray, String> {
-        let (origin, dir) = (self.origins.row(index), self.directions.row(index));
-        let ray = QueryRay::new(origin, dir).ok_or_else(|| match dir == DVec3::ZERO {
-            true => format!("the direction of ray {index} is 0: a ray goes somewhere"),
-            false => format!("ray {index} is not finite: its origin is {origin}, and its direction {dir}"),
-        })?;
-        let ray = match self.leaves {
-            None => ray,
-            Some(leaves) => {
-                let [object, surface] = leaves.map(|of| usize::try_from(of[index]).ok());
-                let start = object.zip(surface).and_then(|(object, surface)| query.start(object, surface));
-                ray.leaving(start.ok_or_else(|| {
-                    format!("`leaves` has no proven hit for ray {index}: take those that hit, as in `hits[hits.verdict == 1]`")
-                })?)
-            }
-        };
-        let end = self.ends.map_or(f64::INFINITY, |ends| ends[index]);
-        if end > 0.0 {
-            Ok((ray, end))
-        } else {
-            Err(format!("`t_max` of ray {index} is {end}: give a positive number"))
-        }
-    }
-}
 
 /// Passes the results of `packet` for all packets of rays to `sink`, in the order of the rays. `packet` takes the index
 /// of the packet's first ray, and the rays.
@@ -229,22 +153,7 @@ impl Columns {
 
     fn into_hits(self, py: Python<'_>) -> PyResult<Hits> {
         let arrays = self.0.into_iter().map(|array| array.into_array(py)).collect::<PyResult<Vec<_>>>()?;
-        let mut arrays: BTreeMap<_, _> = columns::of_arrays().map(|(name, _)| name).zip(arrays).collect();
-        let mut of = |name: &'static str| arrays.remove(name).ok_or_else(|| PyKeyError::new_err(name));
-        Ok(Hits {
-            verdict: of("verdict")?,
-            proof: of("proof")?,
-            object: of("object")?,
-            face: of("face")?,
-            t: of("t")?,
-            t_low: of("t_low")?,
-            t_high: of("t_high")?,
-            distance: of("distance")?,
-            point: of("point")?,
-            normal: of("normal")?,
-            uv: of("uv")?,
-            surface: of("surface")?,
-        })
+        Hits::of(arrays)
     }
 }
 
@@ -256,6 +165,23 @@ pub struct Crossings {
     ray: Py<PyArray1<i64>>,
     /// 1 where the ray enters a closed shape, 0 where it leaves one, -1 otherwise. int8.
     enters: Py<PyArray1<i8>>,
+}
+
+/// Makes pickled answers again of their arrays.
+#[pyfunction]
+pub fn hits_of(arrays: Vec<Py<PyAny>>) -> PyResult<Hits> {
+    Hits::of(arrays)
+}
+
+/// Makes pickled crossings again of the arrays of their answers, and of their own.
+#[pyfunction]
+pub fn crossings_of(
+    py: Python<'_>,
+    arrays: Vec<Py<PyAny>>,
+    ray: Py<PyArray1<i64>>,
+    enters: Py<PyArray1<i8>>,
+) -> PyResult<Py<Crossings>> {
+    Py::new(py, PyClassInitializer::from(Hits::of(arrays)?).add_subclass(Crossings { ray, enters }))
 }
 
 /// Finds the first hits of rays.
@@ -337,8 +263,48 @@ pub fn occluded<'py>(
 }
 
 impl Hits {
+    /// Makes answers of the arrays of `columns::of_arrays`, in their order.
+    fn of(arrays: Vec<Py<PyAny>>) -> PyResult<Self> {
+        let mut arrays: BTreeMap<_, _> = columns::of_arrays().map(|(name, _)| name).zip(arrays).collect();
+        let mut of = |name: &'static str| arrays.remove(name).ok_or_else(|| PyKeyError::new_err(name));
+        Ok(Self {
+            verdict: of("verdict")?,
+            proof: of("proof")?,
+            object: of("object")?,
+            face: of("face")?,
+            t: of("t")?,
+            t_low: of("t_low")?,
+            t_high: of("t_high")?,
+            distance: of("distance")?,
+            point: of("point")?,
+            normal: of("normal")?,
+            uv: of("uv")?,
+            surface: of("surface")?,
+        })
+    }
+
+    /// Returns these arrays.
+    fn arrays(&self, py: Python<'_>) -> Vec<Py<PyAny>> {
+        let array = |name| match name {
+            "verdict" => &self.verdict,
+            "proof" => &self.proof,
+            "object" => &self.object,
+            "face" => &self.face,
+            "t" => &self.t,
+            "t_low" => &self.t_low,
+            "t_high" => &self.t_high,
+            "distance" => &self.distance,
+            "point" => &self.point,
+            "normal" => &self.normal,
+            "uv" => &self.uv,
+            "surface" => &self.surface,
+            _ => unreachable!("each column is an array of answers"),
+        };
+        columns::of_arrays().map(|(name, _)| array(name).clone_ref(py)).collect()
+    }
+
     /// Returns the objects and the surfaces that this many rays leave.
-    fn starts<'py>(&self, py: Python<'py>, rays: usize) -> PyResult<[PyReadonlyArray1<'py, i32>; 2]> {
+    pub fn starts<'py>(&self, py: Python<'py>, rays: usize) -> PyResult<[PyReadonlyArray1<'py, i32>; 2]> {
         let of = |array: &Py<PyAny>| array.bind(py).extract::<PyReadonlyArray1<'py, i32>>();
         let starts = [of(&self.object)?, of(&self.surface)?];
         match starts[0].len()? {
@@ -356,6 +322,11 @@ impl Hits {
         self.verdict.bind(py).len()
     }
 
+    /// The arrays in the order of the columns, from which `hits_of` makes the answers again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, impl IntoPyObject<'py>)> {
+        Ok((py.import("tabray._native")?.getattr("hits_of")?, (self.arrays(py),)))
+    }
+
     /// Returns some of the answers, chosen as those of an array: by a mask, by indices or by a slice.
     fn __getitem__(&self, py: Python<'_>, index: &Bound<'_, PyAny>) -> PyResult<Self> {
         let index = if index.is_instance_of::<PyInt>() {
@@ -363,21 +334,8 @@ impl Hits {
         } else {
             index.clone()
         };
-        let of = |array: &Py<PyAny>| Ok::<_, PyErr>(array.bind(py).get_item(&index)?.unbind());
-        Ok(Self {
-            verdict: of(&self.verdict)?,
-            proof: of(&self.proof)?,
-            object: of(&self.object)?,
-            face: of(&self.face)?,
-            t: of(&self.t)?,
-            t_low: of(&self.t_low)?,
-            t_high: of(&self.t_high)?,
-            distance: of(&self.distance)?,
-            point: of(&self.point)?,
-            normal: of(&self.normal)?,
-            uv: of(&self.uv)?,
-            surface: of(&self.surface)?,
-        })
+        let of = |array: Py<PyAny>| Ok(array.bind(py).get_item(&index)?.unbind());
+        Self::of(self.arrays(py).into_iter().map(of).collect::<PyResult<_>>()?)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -397,6 +355,13 @@ impl Hits {
 
 #[pymethods]
 impl Crossings {
+    fn __reduce__<'py>(own: PyRef<'py, Self>) -> PyResult<(Bound<'py, PyAny>, impl IntoPyObject<'py>)> {
+        let py = own.py();
+        let of = py.import("tabray._native")?.getattr("crossings_of")?;
+        let (ray, enters) = (own.ray.clone_ref(py), own.enters.clone_ref(py));
+        Ok((of, (own.as_super().arrays(py), ray, enters)))
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let rays = self.ray.bind(py).try_readonly()?;
         // The last record of each ray is no crossing.

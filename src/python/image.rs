@@ -122,7 +122,10 @@ fn seen(renderer: &Renderer, plan: &Plan, stops: &(dyn Fn() -> bool + Sync)) -> 
 /// Warns of pixels with flaws.
 fn warn(py: Python<'_>, flaws: &Flaws) -> PyResult<()> {
     let told = [
-        (flaws.cuts.pixels, "cut off at the ray budget: mirrors or glass spawn too many rays"),
+        (
+            flaws.cuts.pixels,
+            "not finished: mirrors or glass spawn too many rays; a lower `specular` or `transparency` ends them sooner",
+        ),
         (flaws.undecided.pixels(), "could not be decided: a surface that rays touch may be missing there"),
     ];
     for (pixels, what) in told.into_iter().filter(|(pixels, _)| *pixels > 0) {

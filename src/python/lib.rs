@@ -8,6 +8,7 @@ mod hits;
 mod image;
 mod mesh;
 mod proof;
+mod rays;
 mod scene;
 mod work;
 
@@ -25,7 +26,7 @@ mod _native {
     use tabray_lang::list_json::Tables;
 
     #[pymodule_export]
-    use crate::hits::{Crossings, Hits};
+    use crate::hits::{Crossings, Hits, crossings_of, hits_of};
     #[pymodule_export]
     use crate::image::Image;
     #[pymodule_export]
@@ -33,7 +34,11 @@ mod _native {
     #[pymodule_export]
     use crate::proof::Proof;
     #[pymodule_export]
-    use crate::scene::{Scene, read, read_mesh};
+    use crate::scene::{Scene, read, read_again, read_mesh};
+
+    #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "this is its name in Python")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 
     /// Returns the tables of the scene language as JSON, as `tabray list --json` prints them.
     #[pyfunction]

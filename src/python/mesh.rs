@@ -5,8 +5,9 @@ use crate::errors;
 use crate::hits::{self, Asked, Crossings, Hits, Rays};
 use crate::work::How;
 use glam::DVec3;
+use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::{Arc, OnceLock};
 use tabray_core::parallel;
@@ -30,21 +31,25 @@ pub struct Mesh {
 }
 
 /// Makes a mesh from arrays: vertices of shape (n, 3), numbers of any type, and the corners of triangles, of shape
-/// (m, 3), integers of any type. Coordinates are not rounded. Triangles without an area are left out: no ray hits
-/// them.
+/// (m, 3), integers of any type; or from an object with `vertices` and `faces`, such as trimesh's. Coordinates are not
+/// rounded. Triangles without an area are left out: no ray hits them.
 #[pyfunction]
-#[pyo3(signature = (vertices, faces, *, threads=None))]
+#[pyo3(signature = (vertices, faces=None, *, threads=None))]
 pub fn mesh(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
-    faces: &Bound<'_, PyAny>,
+    faces: Option<&Bound<'_, PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Mesh> {
-    let vertices = Vectors::of(vertices, "vertices")?;
+    let (vertices, faces) = match faces {
+        Some(faces) => (vertices.clone(), faces.clone()),
+        None => parts(vertices)?,
+    };
+    let vertices = Vectors::of(&vertices, "vertices")?;
     let rows = vertices.rows(vertices.count().unwrap_or(1))?;
     let view = rows.view();
     let count = vertices.count().unwrap_or(1);
-    let faces = arrays::faces(faces, count)?;
+    let faces = arrays::faces(&faces, count)?;
     let how = How { threads, progress: None };
     let surface =
         how.run(py, 0, |_, _| Surface::of_arrays((0..count).map(|index| view.row(index)).collect(), faces))?;
@@ -53,6 +58,17 @@ pub fn mesh(
     let shape = AnyShape::of_packets(Shape::<Exact>::new(surface.clone(), Accuracy::Exact));
     let model = reader::model_of_shape(registry, shape).map_err(|report| errors::exception(py, &report))?;
     Ok(Mesh { surface, turned: OnceLock::new(), model })
+}
+
+/// Returns the vertices and the faces of an object that has both.
+fn parts<'py>(object: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    match [object.getattr_opt("vertices")?, object.getattr_opt("faces")?] {
+        [Some(vertices), Some(faces)] => Ok((vertices, faces)),
+        _ => Err(PyTypeError::new_err(format!(
+            "an object of the type {} is no mesh: give vertices and faces, or an object that has `vertices` and `faces`",
+            object.get_type().name()?
+        ))),
+    }
 }
 
 impl Mesh {
@@ -194,6 +210,22 @@ impl Mesh {
     #[getter]
     fn bounds(&self) -> [[f64; 3]; 2] {
         self.surface.bounds().map(|corner| corner.to_array())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, impl IntoPyObject<'py>)> {
+        let (vertices, faces) = self.surface.to_arrays();
+        let vertices: Vec<[f64; 3]> = vertices.iter().map(DVec3::to_array).collect();
+        let arrays = (Array2::from(vertices).into_pyarray(py), Array2::from(faces).into_pyarray(py));
+        Ok((py.import("tabray._native")?.getattr("mesh")?, arrays))
+    }
+
+    /// Nothing changes a mesh: it is its own copy.
+    fn __copy__(own: Py<Self>) -> Py<Self> {
+        own
+    }
+
+    fn __deepcopy__(own: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        own
     }
 
     fn __repr__(&self) -> String {

@@ -9,6 +9,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use std::env;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use tabray_core::scene::choice::Choice;
@@ -32,9 +33,8 @@ pub struct Source {
     /// The folder to which file names in the text are relative.
     folder: PathBuf,
     bytes: Vec<u8>,
-    /// The values that are set beside the text, and their names in messages.
+    /// The values that are set beside the text.
     sets: Vec<String>,
-    set_by: Vec<String>,
     /// Whether a person wrote the text. Messages show only such text.
     is_written: bool,
 }
@@ -43,7 +43,7 @@ impl Source {
     /// Takes a text that the package made. `name` is its name in messages.
     fn made(name: String, folder: PathBuf, text: &str) -> Self {
         let bytes = text.as_bytes().to_vec();
-        Self { name, folder, bytes, sets: Vec::new(), set_by: Vec::new(), is_written: false }
+        Self { name, folder, bytes, sets: Vec::new(), is_written: false }
     }
 
     /// Makes a model, with this accuracy or with the scene's own.
@@ -55,7 +55,7 @@ impl Source {
     ) -> PyResult<Result<Loaded, Report>> {
         let registry = Registry::get().map_err(PyRuntimeError::new_err)?;
         let read = if only_rays { reader::read_for_rays } else { reader::read_by };
-        let (sets, set_by) = (&self.sets[..], &self.set_by[..]);
+        let (sets, set_by) = (&self.sets[..], &vec!["set".to_owned(); self.sets.len()][..]);
         let loaded = How::PLAIN.run(py, 0, |_, _| {
             let options = ReadOptions { above_all: accuracy, sets, set_by, ..ReadOptions::default() };
             read(registry, &self.name, &self.folder, &self.bytes, options)
@@ -97,8 +97,7 @@ pub fn read(
     sets: Vec<String>,
     is_written: bool,
 ) -> PyResult<Scene> {
-    let set_by = vec!["set".to_owned(); sets.len()];
-    let mut source = Source { name, folder, bytes, sets, set_by, is_written: true };
+    let mut source = Source { name, folder, bytes, sets, is_written: true };
     let (loaded, has_camera) = match source.load(py, None, false)? {
         Ok(loaded) => (loaded, true),
         Err(report) if report.lacks_camera() => (loaded_for_rays(py, &source)?, false),
@@ -117,12 +116,36 @@ pub fn read_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
     scene(py, source, loaded, false)
 }
 
+/// Makes a pickled scene again, without its warnings: `__reduce__` gives the arguments.
+#[pyfunction]
+pub fn read_again(
+    py: Python<'_>,
+    name: String,
+    folder: PathBuf,
+    bytes: Vec<u8>,
+    sets: Vec<String>,
+    is_written: bool,
+    has_camera: bool,
+) -> PyResult<Scene> {
+    let source = Source { name, folder, bytes, sets, is_written };
+    let loaded = if has_camera {
+        source.load(py, None, false)?.map_err(|report| errors::exception(py, &report))?
+    } else {
+        loaded_for_rays(py, &source)?
+    };
+    Ok(Scene::new(source, loaded, has_camera))
+}
+
 fn scene(py: Python<'_>, source: Source, loaded: Loaded, has_camera: bool) -> PyResult<Scene> {
     errors::warn(py, &loaded.warnings)?;
-    Ok(Scene { source, model: Arc::new(loaded.model), exact: OnceLock::new(), has_camera })
+    Ok(Scene::new(source, loaded, has_camera))
 }
 
 impl Scene {
+    fn new(source: Source, loaded: Loaded, has_camera: bool) -> Self {
+        Self { source, model: Arc::new(loaded.model), exact: OnceLock::new(), has_camera }
+    }
+
     /// Returns the model with this accuracy.
     fn with(&self, py: Python<'_>, accuracy: Accuracy) -> PyResult<Arc<Model>> {
         if self.model.camera.value.accuracy == accuracy {
@@ -307,6 +330,23 @@ impl Scene {
     fn own_size(&self) -> Option<(usize, usize)> {
         let [width, height] = self.model.camera.value.pixels;
         self.has_camera.then_some((width, height))
+    }
+
+    /// A pickle has the text of the scene, and the full name of its folder: the scene is read again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, impl IntoPyObject<'py>)> {
+        let Source { name, folder, bytes, sets, is_written } = &self.source;
+        let folder = env::current_dir()?.join(folder);
+        let again = py.import("tabray._native")?.getattr("read_again")?;
+        Ok((again, (name, folder, PyBytes::new(py, bytes), sets, *is_written, self.has_camera)))
+    }
+
+    /// Nothing changes a scene: it is its own copy.
+    fn __copy__(own: Py<Self>) -> Py<Self> {
+        own
+    }
+
+    fn __deepcopy__(own: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        own
     }
 
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {

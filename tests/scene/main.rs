@@ -12,5 +12,6 @@ mod many;
 mod model;
 mod names;
 mod older;
+mod python;
 mod robust;
 mod toml;

@@ -17,7 +17,7 @@ from typing import Mapping, Sequence
 
 from . import entities
 from ._errors import Fault, SceneError, SceneWarning
-from ._native import Crossings, Hits, Image, Mesh, Proof, Scene, mesh
+from ._native import Crossings, Hits, Image, Mesh, Proof, Scene, __version__, mesh
 from ._native import read as _read
 from ._native import read_mesh as _read_mesh
 from ._places import NAME, Path as _Path, told_by
@@ -34,6 +34,7 @@ __all__ = [
     "SceneError",
     "SceneWarning",
     "Verdict",
+    "__version__",
     "entities",
     "load",
     "mesh",

@@ -2,12 +2,20 @@
 
 from os import PathLike
 from pathlib import Path
-from typing import Any, Callable, final
+from typing import Any, Callable, Protocol, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 Progress = Callable[[int, int], object]
+
+__version__: str
+
+class HasFaces(Protocol):
+    @property
+    def vertices(self) -> ArrayLike: ...
+    @property
+    def faces(self) -> ArrayLike: ...
 
 class Hits:
     @property
@@ -173,5 +181,8 @@ class Scene:
 
 def read(name: str, folder: Path, bytes: bytes, sets: list[str], is_written: bool) -> Scene: ...
 def read_mesh(path: Path) -> Scene: ...
+@overload
 def mesh(vertices: ArrayLike, faces: ArrayLike, *, threads: int | None = None) -> Mesh: ...
+@overload
+def mesh(vertices: HasFaces, faces: None = None, *, threads: int | None = None) -> Mesh: ...
 def tables() -> str: ...

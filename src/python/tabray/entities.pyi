@@ -381,6 +381,7 @@ def metal(
     color: _Numbers = None,
     shininess: _Numbers = None,
     roughness: _Numbers = None,
+    emission: _Numbers = None,
 ) -> Entity: ...
 
 def normals(
@@ -459,6 +460,18 @@ def plane(
     normal: _Numbers = None,
     point: _Numbers = None,
     shader: _Words = None,
+) -> Entity: ...
+
+def plastic(
+    name: str,
+    /,
+    *,
+    colour: _Numbers = None,
+    color: _Numbers = None,
+    index: _Numbers = None,
+    roughness: _Numbers = None,
+    shininess: _Numbers = None,
+    emission: _Numbers = None,
 ) -> Entity: ...
 
 def polygon(

@@ -38,5 +38,16 @@ def inside(points: list[list[float]]) -> list[int]:
     return found
 
 
+class Solid:
+    """A mesh of another library."""
+
+    vertices: NDArray[np.float64] = np.eye(3)
+    faces: NDArray[np.int64] = np.arange(3).reshape(1, 3)
+
+
+triangle: tabray.Mesh = tabray.mesh(Solid())
+version: str = tabray.__version__
+# A name that no sphere has is an error; without one, this comment is.
+tabray.entities.sphere("ball", raduis=2)  # type: ignore[call-arg]
 ball = tabray.scene([tabray.entities.material("red"), tabray.entities.sphere("ball", material="red", radius=2)])
 proven: NDArray[np.bool_] = ball.verify(threads=2).proven

@@ -1,6 +1,8 @@
 """What rays hit is an array for each thing that is known, the same for any layout, precision and number of threads."""
 
+import copy
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -216,3 +218,20 @@ def test_starts_that_are_no_hits_are_refused(balls):
     with pytest.raises(ValueError, match="2 hits for 1 rays"):
         balls.hits(hits.point[:1], [[0, 0, 1]], leaves=hits)
     assert hits[0].t.tolist() == hits[:1].t.tolist() == hits[hits.verdict == 1].t.tolist() == [7]
+
+
+def test_answers_are_pickled_and_copied_with_all_of_their_arrays(balls):
+    hits, crossings = balls.hits(*rays(50)), balls.crossings(*rays(50))
+    for one in [hits, hits[hits.verdict == 1], crossings]:
+        names = [name for name in dir(one) if isinstance(getattr(one, name), np.ndarray)]
+        assert len(names) == (14 if one is crossings else 12)
+        for other in [pickle.loads(pickle.dumps(one)), copy.copy(one), copy.deepcopy(one)]:
+            assert type(other) is type(one) and repr(other) == repr(one)
+            for name in names:
+                assert np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True), name
+                assert getattr(one, name).dtype == getattr(other, name).dtype
+    kept = copy.deepcopy(hits)
+    hits.t[:] = 0
+    assert not np.array_equal(kept.t, hits.t)
+    start = pickle.loads(pickle.dumps(kept[kept.verdict == 1]))
+    assert len(balls.hits(start.point, start.normal, leaves=start)) == len(start)

@@ -1,5 +1,9 @@
 """Meshes are arrays of vertices and faces, without a file."""
 
+import copy
+import pickle
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -20,6 +24,27 @@ def test_arrays_are_taken_in_each_type(integer, number):
     assert hits.face.tolist() == [2, 0, -1] and hits.t[:2].tolist() == [4, 2.5]
     assert cube.is_closed and cube.bounds == [[0, 0, 0], [1, 1, 1]]
     assert repr(cube) == "<tabray.Mesh of 12 triangles, closed>"
+
+
+def test_an_object_with_vertices_and_faces_is_a_mesh():
+    solid = SimpleNamespace(vertices=CORNERS, faces=CUBE)
+    assert repr(tabray.mesh(solid)) == "<tabray.Mesh of 12 triangles, closed>"
+    for wrong in [SimpleNamespace(vertices=CORNERS), CORNERS, None]:
+        with pytest.raises(TypeError, match="is no mesh: give vertices and faces, or an object that has"):
+            tabray.mesh(wrong)
+
+
+def test_a_mesh_is_pickled_with_the_indices_of_its_faces():
+    flat = np.concatenate([CUBE[:3], [[1, 1, 2]], CUBE[3:]])
+    cube = tabray.mesh(CORNERS, flat)
+    origins, directions = np.random.default_rng(2).normal(size=(2, 50, 3))
+    hits = cube.hits(9 * origins, 0.5 - 9 * origins)
+    assert (hits.face > 3).any()
+    for other in [pickle.loads(pickle.dumps(cube)), copy.copy(cube), copy.deepcopy(cube)]:
+        again = other.hits(9 * origins, 0.5 - 9 * origins)
+        for name in ["verdict", "t", "t_low", "t_high", "face"]:
+            assert np.array_equal(getattr(hits, name), getattr(again, name), equal_nan=True), name
+        assert other.bounds == cube.bounds and other.is_closed
 
 
 def test_indices_are_checked():

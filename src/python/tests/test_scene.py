@@ -1,7 +1,13 @@
 """Scenes are read by the reader of the program, whether of files, texts or dicts."""
 
+import copy
+import inspect
+import os
 import pickle
 import warnings
+from concurrent.futures import ProcessPoolExecutor
+from importlib.metadata import version
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -152,3 +158,48 @@ def test_reprs_say_what_there_is():
     assert repr(scene) == "<tabray.Scene `<text>`: 1 object, 1 light, 8 x 6 pixels>"
     assert repr(scene.render()) == "<tabray.Image of 8 x 6 pixels>"
     assert repr(scene.verify()).startswith("<tabray.Proof of 48 pixels: ")
+
+
+def test_a_scene_is_pickled_as_its_text(tmp_path, monkeypatch, scenes):
+    bright = BALL.replace("ambient 0.2 0 0", "ambient 200 0 0")
+    with pytest.warns(tabray.SceneWarning):
+        warned = tabray.parse(bright, set={"size": 3})
+    bare = tabray.parse("material red { }  sphere ball { material red  center 0 0 0  radius 2 }")
+    mesh = tabray.load(os.path.relpath(scenes / "models" / "knot.obj"))
+    pickled = [pickle.dumps(scene) for scene in [warned, tabray.scene(AS_DICTS), bare, mesh]]
+    # File names are relative to the folder of the scene, wherever it is made again.
+    monkeypatch.chdir(tmp_path)
+    for text, scene in zip(pickled, [warned, tabray.scene(AS_DICTS), bare, mesh]):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            again = pickle.loads(text)
+        assert repr(again) == repr(scene)
+        hits, others = [each.hits([0, 0, 90], [0.01, 0, -1]) for each in (scene, again)]
+        assert hits.t.tolist() == others.t.tolist() or np.isnan(hits.t).all()
+    assert np.array_equal(pickle.loads(pickled[0]).render().array, warned.render().array)
+    assert copy.copy(warned) is warned and copy.deepcopy(warned) is warned
+
+
+def distance(scene):
+    """Return how far away the scene is."""
+    return float(scene.hits([0, 0, 9], [0, 0, -1]).t[0])
+
+
+def test_other_processes_take_scenes():
+    scenes = [tabray.parse(BALL, set={"size": size}) for size in (1, 2, 3)]
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        assert list(pool.map(distance, scenes)) == [8, 7, 6]
+
+
+def test_the_package_says_its_version():
+    assert tabray.__version__ == version("tabray")
+
+
+def test_functions_of_entities_are_typed_by_their_names():
+    """The stub is made from the tables by tests/scene/python.rs."""
+    with open(os.path.join(os.path.dirname(tabray.__file__), "entities.pyi")) as stub:
+        text = stub.read()
+    for kind in tabray.entities.__all__:
+        own = text.split(f"\ndef {kind}(")[1].split(")")[0]
+        for name in inspect.signature(getattr(tabray.entities, kind)).parameters:
+            assert f"    {name}: " in own, (kind, name)

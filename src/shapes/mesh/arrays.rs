@@ -60,6 +60,17 @@ impl Surface {
         Self::of_checked(vertices, faces, Look::default())
     }
 
+    /// Returns vertices and faces that make this surface again. A face that was left out, as it has no area, has one
+    /// vertex as all of its corners.
+    pub fn to_arrays(&self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let count = self.order.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut faces = vec![[0; 3]; count];
+        for (face, order) in self.faces.iter().zip(&self.order) {
+            faces[*order as usize] = *face;
+        }
+        (self.vertices.clone(), faces)
+    }
+
     /// Returns this surface with the faces of each part oriented consistently, as most of them are. Surfaces read from
     /// files are oriented in the same way.
     ///
@@ -81,6 +92,23 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_surface_is_made_again_from_its_arrays() {
+        let corners = vec![DVec3::ONE, DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = vec![[1, 2, 3], [2, 2, 4], [4, 3, 2], [1, 4, 2]];
+        let surface = Surface::of_arrays(corners.clone(), faces.clone()).expect("a surface");
+        let (vertices, again) = surface.to_arrays();
+        let triangle = |vertices: &[DVec3], face: [u32; 3]| face.map(|corner| vertices[corner as usize]);
+        for index in [0, 2, 3] {
+            assert_eq!(triangle(&vertices, again[index]), triangle(&corners, faces[index]), "face {index}");
+        }
+        let other = Surface::of_arrays(vertices, again).expect("a surface");
+        assert_eq!(
+            (&other.vertices, &other.faces, &other.order),
+            (&surface.vertices, &surface.faces, &surface.order)
+        );
+    }
 
     #[test]
     fn what_makes_no_surface_is_told_with_its_first_place() {
