@@ -247,6 +247,35 @@ fn what_beginners_write_is_told_with_the_cure() {
     for (from, to, cure) in [
         ("ambient 0.5 0.5 1", "ambient red", "`ambient 1 0 0`"),
         ("ambient 0.5 0.5 1", "ambient rgb(0.5, 0.5, 1)", "write `ambient 0.5 0.5 1`"),
+        (
+            "ambient 0.5 0.5 1",
+            "ambient 0.5 0.5 1 diffuse 0.7",
+            "a grey is three equal numbers: `diffuse 0.7 0.7 0.7`",
+        ),
+        ("ambient 0.5 0.5 1", "ambient 70%", "a grey is three equal numbers: `ambient 0.7 0.7 0.7`"),
+        ("ambient 0.5 0.5 1", "ambient 70% 5% 100%", "write 70 percent as `0.7`"),
+        ("ambient 0.5 0.5 1", "ambient rgb(70%, 5%, 100%)", "write `ambient 0.7 0.05 1`"),
+        (
+            "ambient 0.5 0.5 1",
+            "ambient shiny",
+            "such as `ambient 0.8 0.5 0.2`; the name of a material goes after `material`",
+        ),
+        (
+            "ambient 0.5 0.5 1",
+            "ambient 0.5 0.5 1 roughness 0.2",
+            "`metal` and `plastic` have it; a material takes",
+        ),
+        ("radius 2", "radius 2 emission 1 1 1", "have it: write it there; a sphere takes"),
+        (
+            "radius 2",
+            "radius 2 roughness 0.2",
+            "`metal` and `plastic` have it: write it there; a sphere takes",
+        ),
+        (
+            "material blue { ambient 0.5 0.5 1",
+            "metal blue { colour 1 1 1 diffuse 1 1 1",
+            "`material` has it; a metal takes",
+        ),
         ("ambient 0.5 0.5 1", "ambient rgb(255,0,51)", "write `ambient 1 0 0.2`"),
         ("ambient 0.5 0.5 1", "ambient <0.5, 0.5, 1>", "write `0.5 0.5 1`"),
         ("ambient 0.5 0.5 1", "ambient \"0.5 0.5 1\"", "write numbers without quotes: `0.5 0.5 1`"),

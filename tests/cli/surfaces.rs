@@ -32,6 +32,18 @@ fn a_surface_of_surfer_is_converted_and_says_what_it_leaves() {
     );
 }
 
+/// A surface beyond the ball may be known at once by its bounds, or to rays alone.
+#[test]
+fn a_ball_that_holds_no_surface_has_no_object_in_view() {
+    let folder = folder();
+    for (square, status_then) in [("400", 2), ("2", 0)] {
+        let surface = format!("surface_equation=x^2+y^2+z^2-{square}\n");
+        fs::write(folder.path().join("a.jsurf"), surface).expect("written");
+        let (status, _, err) = outcome(tabray(&folder).args(["convert", "a.jsurf", "a.ray"]));
+        assert!(status == status_then && err.contains("no object is in view"), "{square}: {status} {err}");
+    }
+}
+
 #[test]
 fn an_object_becomes_a_mesh_that_is_read_again() {
     let folder = folder();

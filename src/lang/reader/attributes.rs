@@ -181,20 +181,22 @@ impl AttributeChecker<'_, '_> {
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
         let takes = format!("{} takes {names}", text::with_article(entity.name));
-        // One material stands where another does.
+        // One material stands where another does, and an object has one.
+        let is_material = entity.kind() == Kind::Material;
         let has = |other: &&Entity| {
             near.is_none()
-                && entity.kind() == Kind::Material
+                && (is_material || entity.refers_to(Kind::Material))
                 && other.kind() == Kind::Material
                 && other.attributes().any(|attribute| attribute.name() == word.text)
         };
         let others = self.registry.iter().filter(has).map(|other| format!("`{}`", other.name));
         let others: Vec<_> = others.take(MAX_OTHERS).collect();
         let words: Vec<_> = others.iter().map(String::as_str).collect();
+        let there = if is_material { "" } else { ": write it there" };
         self.report.add(fault.help(match words[..] {
             [] => takes,
-            [other] => format!("{other} has it; {takes}"),
-            _ => format!("{} have it; {takes}", text::and(&words)),
+            [other] => format!("{other} has it{there}; {takes}"),
+            _ => format!("{} have it{there}; {takes}", text::and(&words)),
         }));
     }
 

@@ -1,7 +1,8 @@
 //! What people write in place of numbers, and how to write it.
 
-use super::parsed::Word;
+use super::parsed::{Form, Word};
 use crate::syntax::Syntax;
+use tabray_core::scene::COLOUR;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::text::shortest;
 
@@ -53,8 +54,21 @@ pub fn cure(attribute: &dyn Attribute, words: &[Word<'_>], syntax: Syntax) -> Op
     {
         return Some(format!("{across} x {up} samples are {}", write(&[f64::from(across) * f64::from(up)])));
     }
-    // What is written as numbers are is not cured by writing it so.
-    let are_numbers = words.iter().all(|word| word.text.parse::<f64>().is_ok());
+    let is_colour = takes(3) && attribute.each() == COLOUR;
+    if let (true, false, Some([level])) = (is_colour, takes(1), numbers(text).as_deref()) {
+        return Some(format!("a grey is three equal numbers: {}", write(&[*level; 3])));
+    }
+    if let ([name], true) = (words, is_colour)
+        && name.form != Form::Text
+        && is_name(&name.text)
+    {
+        let such = write(&[0.8, 0.5, 0.2]);
+        return Some(format!(
+            "a colour is its red, green and blue, such as {such}; the name of a material goes after `material`"
+        ));
+    }
+    // What is written as numbers are is not cured by writing it so, and percentages are told one by one.
+    let are_numbers = words.iter().all(|word| word.text.trim_end_matches('%').parse::<f64>().is_ok());
     let numbers = numbers(text).filter(|numbers| !are_numbers && takes(numbers.len()))?;
     let is_levels = lower.starts_with("rgb") && numbers.iter().any(|number| *number > 1.0);
     let numbers = match is_levels {
@@ -77,6 +91,12 @@ pub fn in_quotes(text: &str, syntax: Syntax) -> Option<String> {
     })
 }
 
+/// Tells whether a word may be the name of an entity.
+fn is_name(word: &str) -> bool {
+    word.starts_with(char::is_alphabetic)
+        && word.chars().all(|letter| letter.is_alphanumeric() || letter == '_')
+}
+
 /// Returns the light of a colour by its name, or written as `#ff8000`.
 fn colour(text: &str) -> Option<[f64; 3]> {
     let lower = text.to_lowercase();
@@ -90,8 +110,8 @@ fn colour(text: &str) -> Option<[f64; 3]> {
     Some([red, green, blue].map(|level| (f64::from(level) / 255.0 * 1000.0).round() / 1000.0))
 }
 
-/// Reads numbers that are joined by commas, brackets, an `x` or the word of a function, or whose minus is another sign or
-/// stands apart.
+/// Reads numbers that are joined by commas, brackets, an `x` or the word of a function, whose minus is another sign or
+/// stands apart, or that are percentages.
 fn numbers(text: &str) -> Option<Vec<f64>> {
     let text = text.replace(['\u{2212}', '\u{2013}', '\u{2014}'], "-").replace('\u{d7}', "x");
     let body = match text.split_once(['(', '[', '<', '{']) {
@@ -107,7 +127,10 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
             is_minus = true;
             continue;
         }
-        let number: f64 = word.parse().ok()?;
+        let number: f64 = match word.strip_suffix('%') {
+            Some(percent) => percent.parse::<f64>().ok()? / 100.0,
+            None => word.parse().ok()?,
+        };
         numbers.push(if is_minus { -number } else { number });
         is_minus = false;
     }
