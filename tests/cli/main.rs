@@ -21,6 +21,7 @@ mod full_range;
 mod grade;
 mod help;
 mod hits;
+mod leaving;
 mod light;
 mod limits;
 mod messages;

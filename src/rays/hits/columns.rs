@@ -21,7 +21,7 @@ pub struct Answered<'q, 'm> {
 
 /// A column of answers.
 struct Column {
-    /// The name in JSON, and in CSV but for vectors; empty if text does not have the column.
+    /// The name in JSON, and in CSV but for vectors.
     name: &'static str,
     /// The name in arrays; `None` if they do not have the column.
     array: Option<&'static str>,
@@ -70,10 +70,7 @@ static COLUMNS: [Column; 15] = [
     Column::both("point", Value::Vector(&["x", "y", "z"], |at| Some(at.point.to_array()))),
     Column::both("normal", Value::Vector(&["nx", "ny", "nz"], |at| Some(at.normal.to_array()))),
     Column::both("uv", Value::Vector(&["u", "v"], |at| at.uv.map(|uv| [uv.x, uv.y, f64::NAN]))),
-    Column {
-        array: Some("surface"),
-        ..Column::text("", Value::Index(|of| Some(of.query.surface(&of.answer)? as u64)))
-    },
+    Column::both("surface", Value::Index(|of| Some(of.query.surface(&of.answer)? as u64))),
 ];
 
 /// The columns that answers have only where a ray may have several. They are the first ones of CSV.
@@ -84,7 +81,7 @@ const ENTERS: &str = "enters";
 fn of_csv(are_all: bool) -> impl Iterator<Item = &'static Column> {
     let is_of_all = |column: &&Column| [RAY, ENTERS].contains(&column.name);
     let of_all = COLUMNS.iter().filter(move |column| are_all && is_of_all(column));
-    of_all.chain(COLUMNS.iter().filter(move |column| !is_of_all(column) && !column.name.is_empty()))
+    of_all.chain(COLUMNS.iter().filter(move |column| !is_of_all(column)))
 }
 
 /// Returns the first line of CSV.
@@ -236,7 +233,7 @@ impl Serialize for Answered<'_, '_> {
             value.map_or(Ok(()), |value| map.serialize_entry(name, &value))
         }
         let mut map = to.serialize_map(None)?;
-        for Column { name, value, .. } in COLUMNS.iter().filter(|column| !column.name.is_empty()) {
+        for Column { name, value, .. } in &COLUMNS {
             match value {
                 Value::Word(word) => map.serialize_entry(name, word(&self.answer).0)?,
                 Value::Name(of) => entry(&mut map, name, of(self))?,

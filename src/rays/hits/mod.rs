@@ -7,6 +7,7 @@ pub mod hard;
 pub mod judge;
 mod npy;
 pub mod rays;
+pub mod starts;
 pub mod theirs;
 
 use answers::AnswerFormat;
@@ -86,12 +87,14 @@ pub fn read(
         let (mut part, mut is_over): (Vec<Ray>, bool) = (Vec::new(), false);
         // A program that asks through a pipe may wait for an answer before it sends the next ray.
         while part.len() < TOGETHER && bad.len() < TOLD && (part.is_empty() || rays.has_more()) {
-            match rays.next() {
+            let row =
+                rays.next().map(|row| row.and_then(|row| placed(query, row).map_err(|why| rays.fault(why))));
+            match row {
                 None => {
                     is_over = true;
                     break;
                 }
-                Some(Ok(RayRow { ray, t_max })) => part.push((ray, t_max.unwrap_or(asked.t_max))),
+                Some(Ok((ray, t_max))) => part.push((ray, t_max.unwrap_or(asked.t_max))),
                 Some(Err(fault)) => {
                     tally.bad += 1;
                     if !asked.skip_bad || fault.is_last {
@@ -113,6 +116,14 @@ pub fn read(
             return Ok(tally);
         }
     }
+}
+
+/// Returns a ray with the surface that it leaves, and its end.
+fn placed(query: &Query, RayRow { ray, t_max, leaves }: RayRow) -> Result<(QueryRay, Option<f64>), String> {
+    let Some([object, surface]) = leaves else { return Ok((ray, t_max)) };
+    let start = query.start(object, surface);
+    let start = start.ok_or_else(|| format!("the scene has no object {object} that it could leave"))?;
+    Ok((ray.leaving(start), t_max))
 }
 
 /// Answers the rays through the pixels of a scene's camera, row by row from the top.

@@ -87,7 +87,7 @@ impl<'r> Rows<'r> {
 }
 
 /// Reads the header of a file: the text of a Python dictionary.
-fn head(input: &mut dyn BufRead) -> io::Result<String> {
+pub(super) fn head(input: &mut dyn BufRead) -> io::Result<String> {
     let invalid = || io::Error::from(io::ErrorKind::InvalidData);
     let mut start = [0; 8];
     input.read_exact(&mut start)?;
@@ -104,7 +104,7 @@ fn head(input: &mut dyn BufRead) -> io::Result<String> {
 }
 
 /// Returns the text of a value in a header.
-fn value<'h>(head: &'h str, key: &str) -> Option<&'h str> {
+pub(super) fn value<'h>(head: &'h str, key: &str) -> Option<&'h str> {
     let (_, rest) = head.split_once(&format!("'{key}':"))?;
     let rest = rest.trim_start();
     let end = if rest.starts_with('(') { rest.find(')')? + 1 } else { rest.find([',', '}'])? };

@@ -1,6 +1,7 @@
 //! Reads rays.
 
 use super::npy::{self, Numbers};
+use super::starts::{HitSurface, StartReader};
 use glam::DVec3;
 use serde::Deserialize;
 use std::fmt;
@@ -32,6 +33,8 @@ pub struct RayRow {
     pub ray: QueryRay,
     /// The end, in lengths of its direction.
     pub t_max: Option<f64>,
+    /// The surface that it leaves, if that is told.
+    pub leaves: Option<HitSurface>,
 }
 
 /// An invalid ray.
@@ -56,6 +59,8 @@ impl fmt::Display for BadRay {
 /// Reads rays one after the other, in memory that does not grow with their number.
 pub struct RayReader<'r> {
     rows: Rows<'r>,
+    /// The answers at which the rays start, if they are told.
+    starts: Option<StartReader<'r>>,
     /// The number of the last line or row.
     number: u64,
     is_over: bool,
@@ -107,7 +112,29 @@ impl<'r> RayReader<'r> {
                 Rows::Lines(input, LineForm::Csv(columns))
             }
         };
-        Ok(Self { rows, number, is_over: false })
+        Ok(Self { rows, starts: None, number, is_over: false })
+    }
+
+    /// Lets each ray leave the hit of one of these answers.
+    pub fn leaving(self, answers: StartReader<'r>) -> Self {
+        Self { starts: Some(answers), ..self }
+    }
+
+    /// Returns the fault of the last ray.
+    pub(super) fn fault(&self, message: String) -> BadRay {
+        BadRay { number: self.number, unit: self.unit(), message, is_last: false }
+    }
+
+    fn unit(&self) -> &'static str {
+        if matches!(self.rows, Rows::Npy(_)) { "row" } else { "line" }
+    }
+
+    /// Returns the next ray without the surface that it leaves.
+    fn bare(&mut self) -> Option<Result<RayRow, BadRay>> {
+        let unit = self.unit();
+        let read = self.numbers()?;
+        let row = read.and_then(|(numbers, t_max)| of_numbers(numbers, t_max).map_err(|why| (why, false)));
+        Some(numbered(row, (unit, self.number), &mut self.is_over))
     }
 
     /// Returns the number of rays, where the input says it.
@@ -155,10 +182,21 @@ impl Iterator for RayReader<'_> {
         if self.is_over {
             return None;
         }
-        let unit = if matches!(self.rows, Rows::Npy(_)) { "row" } else { "line" };
-        let read = self.numbers()?;
-        let row = read.and_then(|(numbers, t_max)| of_numbers(numbers, t_max).map_err(|why| (why, false)));
-        Some(numbered(row, (unit, self.number), &mut self.is_over))
+        let row = self.bare();
+        let Some(starts) = &mut self.starts else { return row };
+        let start = starts.next();
+        let is_last = row.is_none() != start.is_none();
+        self.is_over |= is_last;
+        let fault = |message: &str| BadRay { is_last, ..self.fault(message.to_owned()) };
+        Some(match (row, start) {
+            (None, None) => return None,
+            (None, Some(_)) => Err(fault("no ray follows, and there are more answers to leave")),
+            (Some(_), None) => Err(fault("there is no answer for it to leave")),
+            (Some(Err(bad)), _) => Err(bad),
+            (Some(Ok(_)), Some(Err(bad))) => Err(fault(&format!("the answer that it leaves, {bad}"))),
+            (Some(Ok(_)), Some(Ok(None))) => Err(fault("the answer that it leaves has no proven hit")),
+            (Some(Ok(row)), Some(Ok(leaves))) => Ok(RayRow { leaves, ..row }),
+        })
     }
 }
 
@@ -303,7 +341,7 @@ pub(super) fn of_numbers([a, b, c, d, e, f]: [f64; 6], t_max: Option<f64>) -> Re
     }
     let ray = QueryRay::new(origin, dir);
     let why = if dir == DVec3::ZERO { "its direction is 0" } else { "its numbers are not all finite" };
-    ray.map(|ray| RayRow { ray, t_max }).ok_or_else(|| why.to_owned())
+    ray.map(|ray| RayRow { ray, t_max, leaves: None }).ok_or_else(|| why.to_owned())
 }
 
 pub(super) fn short(word: &str) -> String {

@@ -6,7 +6,8 @@ pub mod judge;
 mod model;
 
 use crate::hits::answers::AnswerFormat;
-use crate::hits::rays::{RayFormat, RayReader};
+use crate::hits::rays::{BadRay, RayFormat, RayReader};
+use crate::hits::starts::StartReader;
 use crate::hits::{self, Asked, Ended, Tally};
 use clap::ValueEnum;
 use files::{To, name, of_name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
@@ -54,6 +55,10 @@ pub struct Args {
     /// units
     #[arg(long, conflicts_with_all = ["rays", "from", "skip_bad"])]
     from_camera: bool,
+    /// Let each ray start at the hit of one of these answers of an earlier run for the same scene, line by line. A rounded
+    /// point lies on either side of its surface, which a ray that leaves it does not hit there
+    #[arg(long, value_name = "ANSWERS", conflicts_with = "from_camera")]
+    leaving: Option<PathBuf>,
     /// Write the answers to this file; its ending, .jsonl, .csv or .npy, is their format
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -92,6 +97,7 @@ Examples:
   tabray hits part.stl rays.csv -o answers.csv
   tabray hits part.stl rays.csv --all
   tabray hits part.stl rays.npy -o answers.npy --fast
+  tabray hits part.stl shadows.npy --leaving answers.npy
   tabray hits ball.ray --from-camera --to csv";
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -135,6 +141,9 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let rays = args.rays.as_deref().unwrap_or(Path::new("-"));
     if !args.from_camera {
         refuse_two_on_standard_input(&args.scene, rays, "rays")?;
+        for other in [&args.scene, rays] {
+            refuse_two_on_standard_input(other, args.leaving.as_deref().unwrap_or(Path::new("")), "answers")?;
+        }
     }
     let accuracy = args.method.accuracy()?.or(Some(Accuracy::Exact));
     let model = model::load(registry, &args.scene, &args.set, accuracy)?;
@@ -143,8 +152,16 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         true => None,
         false => {
             let input = open(rays, "rays, six numbers a line,")?;
-            let reader = RayReader::new(input, args.from.map(From::format));
-            Some(reader.map_err(|bad| Failure::usage(format!("`{}`, {bad}", name(rays))))?)
+            let refused = |path: &Path, bad: BadRay| Failure::usage(format!("`{}`, {bad}", name(path)));
+            let reader =
+                RayReader::new(input, args.from.map(From::format)).map_err(|bad| refused(rays, bad))?;
+            Some(match &args.leaving {
+                None => reader,
+                Some(path) => {
+                    let answers = StartReader::new(open(path, "the answers that rays leave")?);
+                    reader.leaving(answers.map_err(|bad| refused(path, bad))?)
+                }
+            })
         }
     };
     let [width, height] = model.camera.value.pixels;
@@ -166,6 +183,9 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if args.output.is_some() {
         output::refuse_source_by(path, "the answers", &args.scene, &model)?;
         output::refuse_input(path, rays, "the rays", "the answers")?;
+        if let Some(leaving) = &args.leaving {
+            output::refuse_input(path, leaving, "the answers that rays leave", "the answers")?;
+        }
     }
     let cannot = |error: &io::Error| Failure::cannot_write(path, error);
     let is_text = args.output.is_none() && format != AnswerFormat::Npy;
