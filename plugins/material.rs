@@ -25,6 +25,12 @@ static SPECULAR: Pparm<PerChannel> = Pparm::or(
     PerChannel(Rgb::ZERO),
 )
 .dumped("specular", " \n\n");
+static HIGHLIGHT: Pparm<PerChannel> = Pparm::or(
+    "highlight",
+    "the reflection coefficient for highlights of lights, without mirror images",
+    PerChannel(Rgb::ZERO),
+)
+.not_dumped();
 static SHININESS: Pparm<f64> =
     Pparm::or("shininess", "the exponent of highlights (larger is sharper, 0 is none)", 0.0)
         .must("0 or more", |sharpness| *sharpness >= 0.0)
@@ -34,7 +40,7 @@ static TRANSPARENCY: Pparm<f64> =
         .between(0.0, 1.0)
         .dumped("transparency", " \n\n");
 
-const TABLE: Table = &[&AMBIENT, &DIFFUSE, &SPECULAR, &SHININESS, &TRANSPARENCY, &EMISSION];
+const TABLE: Table = &[&AMBIENT, &DIFFUSE, &SPECULAR, &SHININESS, &TRANSPARENCY, &EMISSION, &HIGHLIGHT];
 
 inventory::submit! {
     Entity::material("material", "how a surface emits, reflects and transmits light", &[TABLE], |args| {
@@ -43,6 +49,7 @@ inventory::submit! {
             emission: args.get(&EMISSION),
             diffuse: args.get(&DIFFUSE),
             specular: args.get(&SPECULAR).0,
+            highlight: args.get(&HIGHLIGHT).0,
             shininess: args.get(&SHININESS),
             transparency: args.get(&TRANSPARENCY),
             interface: None,

@@ -53,12 +53,7 @@ pub fn read(text: &str, notes: &mut Notes) -> Option<Picture> {
         if used.contains(key) {
             continue;
         }
-        if key.contains("_specular_") {
-            let fault = Fault::warning(Some(entry.key.clone()), "highlights are left out");
-            notes.add(fault.label("in a scene, they come with mirror images"));
-        } else {
-            notes.leave(key, entry.key.start);
-        }
+        notes.leave(key, entry.key.start);
     }
     picture
 }
@@ -184,14 +179,18 @@ impl<'t> File<'t> {
         let colour = self.colour(&format!("{side}_material_color"), 0.5, notes);
         let [ambient] = self.numbers(&format!("{side}_material_ambient_intensity"), [0.1], notes);
         let [diffuse] = self.numbers(&format!("{side}_material_diffuse_intensity"), [0.232_32], notes);
-        // Highlights are omitted, and one message about them is enough.
-        self.find(&format!("{side}_material_shininess"));
-        if side == "back" {
-            for key in ["specular_intensity", "specular_iIntensity"] {
-                self.find(&format!("back_material_{key}"));
-            }
+        let strengths = ["specular_intensity", "specular_iIntensity"].map(|key| {
+            let [strength] = self.numbers(&format!("{side}_material_{key}"), [0.0], notes);
+            strength
+        });
+        let [shininess] = self.numbers(&format!("{side}_material_shininess"), [0.0], notes);
+        let highlight = strengths[0].max(strengths[1]).max(0.0);
+        Look {
+            ambient: ambient * colour,
+            diffuse: diffuse * colour,
+            highlight,
+            shininess: shininess.max(0.0),
         }
-        Look { ambient: ambient * colour, diffuse: diffuse * colour }
     }
 
     fn picture(&self, formula: Read<Value>, parameters: Parameters, notes: &mut Notes) -> Option<Picture> {

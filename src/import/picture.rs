@@ -45,6 +45,9 @@ pub struct Surface {
 pub struct Look {
     pub ambient: DVec3,
     pub diffuse: DVec3,
+    /// The strength of highlights of lamps, and their exponent.
+    pub highlight: f64,
+    pub shininess: f64,
 }
 
 /// A lamp.
@@ -252,8 +255,15 @@ fn cuboid(name: &str, turn: DMat3, middle: &str, sides: DVec3) -> String {
 }
 
 fn material(name: &str, look: &Look) -> String {
+    let glances = look.highlight > 0.0 && look.shininess > 0.0;
+    let highlight = match glances {
+        true => {
+            format!("    highlight {}\n    shininess {}\n", number(look.highlight), number(look.shininess))
+        }
+        false => String::new(),
+    };
     format!(
-        "material {name}\n{{\n    ambient {}\n    diffuse {}\n}}\n\n",
+        "material {name}\n{{\n    ambient {}\n    diffuse {}\n{highlight}}}\n\n",
         colour(look.ambient),
         colour(look.diffuse)
     )

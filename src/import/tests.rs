@@ -134,10 +134,8 @@ fn a_file_of_surfer_is_a_scene() {
     assert!(text.contains("ambient 0.4 0.2 0") && text.contains("sides both { back back }"), "{text}");
     assert_eq!(text.matches("\nlight ").count(), 1, "{text}");
     assert_eq!(left, [("surface_title".to_owned(), 23)]);
-    assert_eq!(
-        warnings,
-        "bowl.jsurf:14:1: warning: highlights are left out: in a scene, they come with mirror images\n"
-    );
+    assert!(text.contains("    highlight 0.5\n    shininess 30\n"), "{text}");
+    assert_eq!(warnings, "");
 }
 
 const SURF: &str = "\

@@ -19,8 +19,10 @@ pub struct Material {
     pub diffuse: Rgb,
     /// The mirror reflectivity.
     pub specular: Rgb,
+    /// The reflectivity for highlights of lamps alone, without mirror images.
+    pub highlight: Rgb,
     /// The exponent of the specular highlight; 0 for no highlight. Highlights of a transparent material with an
-    /// interface are as strong as the light itself; the strength of others is `specular` times the light.
+    /// interface are as strong as the light itself; the strength of others is `specular` and `highlight` times the light.
     pub shininess: f64,
     /// The fraction of light that passes through the surface, from 0 to 1.
     pub transparency: f64,

@@ -1,8 +1,9 @@
 //! What materials do with light inside glass and at rough surfaces, against closed forms.
 
 use crate::common::glass::{SHAPES, glass};
-use crate::common::model;
+use crate::common::{model, render};
 use glam::DVec3;
+use image::RgbImage;
 use std::f64::consts::FRAC_PI_2;
 use tabray::geometry::{Ray, Sight};
 use tabray::render::Plan;
@@ -197,4 +198,51 @@ fn a_rough_surface_is_smooth_where_pixels_have_one_sample() {
     }
     rough.camera.samples = 16;
     assert_ne!(trace::pixel(&rough, 4, 3), trace::pixel(&smooth, 4, 3));
+}
+
+/// A ball under two lamps, one of which has a size, with another object beside it.
+fn ball(material: &str, beside: &str) -> RgbImage {
+    render(&model(&format!(
+        "look_at eye {{ pixeldim 40 30 position 0 1 5 target 0 0 0 angle 30 samples 4 }}
+         light lamp {{ location 3 5 6 emissivity 1 1 1 }}
+         area_light panel {{ location -3 4 5 target 0 0 0 dimensions 1 1 emissivity 9 9 9 visible no }}
+         material m {{ ambient 0.1 0.1 0.1 diffuse 0.4 0.3 0.2 shininess 30 {material} }}
+         material bright {{ ambient 1 1 1 }}
+         sphere ball {{ material m center 0 0 0 radius 1 }} {beside}"
+    )))
+}
+
+#[test]
+fn highlights_without_mirror_images_are_those_of_a_mirror_that_sees_nothing() {
+    let none = ball("", "");
+    let (mirror, alone) = (ball("specular 0.5", ""), ball("highlight 0.5", ""));
+    assert_eq!(mirror, alone);
+    assert_ne!(none, alone);
+    // In the mirror, another object appears.
+    let wall = "plane wall { material bright normal 1 0 0 point -1.5 0 0 }";
+    assert_ne!(ball("specular 0.5", wall), ball("highlight 0.5", wall));
+    let brighter = |one: &RgbImage, other: &RgbImage| {
+        one.pixels().zip(other.pixels()).filter(|(one, other)| one.0[2] > other.0[2]).count()
+    };
+    let (plain, shown) = (ball("", wall), ball("highlight 0.5", wall));
+    assert!(brighter(&shown, &plain) > 20 && brighter(&plain, &shown) == 0);
+}
+
+#[test]
+fn a_lamp_that_is_seen_has_highlights_without_mirror_images() {
+    let scene = |material: &str, shader: &str| {
+        render(&model(&format!(
+            "look_at eye {{ pixeldim 40 30 position 0 1 5 target 0 0 0 angle 30 samples 4 }}
+             sphere_light lamp {{ location 3 5 6 radius 0.5 emissivity 60 60 60 }}
+             material m {{ diffuse 0.2 0.2 0.2 shininess 30 {material} }} material other {{ diffuse 0.1 0.3 0.2 }}
+             checker pattern {{ squares 4 4 altmaterial other }}
+             sphere ball {{ material m center 0 0 0 radius 1 {shader} }}"
+        )))
+    };
+    for shader in ["", "shader pattern"] {
+        let (none, some) = (scene("", shader), scene("highlight 0.3", shader));
+        let brighter =
+            some.pixels().zip(none.pixels()).filter(|(some, none)| some.0[0] > none.0[0] + 20).count();
+        assert!((5..400).contains(&brighter), "{brighter}");
+    }
 }

@@ -38,7 +38,12 @@ impl Script<'_, '_> {
         let diffuse = has("diffuse") * self.number(&format!("diffuse{number}"), 60.0) / 100.0;
         let outside = self.colour(&format!("surface{number}"), [123.0, 104.0, 238.0]);
         let inside = self.colour(&format!("inside{number}"), [230.0, 180.0, 30.0]);
-        [outside, inside].map(|colour| Look { ambient: ambient * colour, diffuse: diffuse * colour })
+        [outside, inside].map(|colour| Look {
+            ambient: ambient * colour,
+            diffuse: diffuse * colour,
+            highlight: 0.0,
+            shininess: 0.0,
+        })
     }
 
     fn clips(&mut self) -> Vec<Clip> {
@@ -149,7 +154,7 @@ impl Script<'_, '_> {
                 }
                 "reflected" if *value != 0.0 && !is_told => {
                     is_told = true;
-                    Some("highlights are left out: in a scene, they come with mirror images")
+                    Some("highlights are left out: give the materials `highlight` and `shininess`")
                 }
                 "reflected" | "smoothness" | "thickness" | "transmitted" | "spec_z" => {
                     self.notes.left.push((name.clone(), place.start));

@@ -10,7 +10,7 @@ use super::surface::{HitPoints, is_black, tint};
 use crate::plan::depth::LightRange;
 use crate::plan::lamps;
 use tabray_exact::interval::{Float, Interval};
-use tabray_exact::scalar::{dot, per_axis};
+use tabray_exact::scalar::{constants, dot, per_axis};
 use tabray_world::geometry::sight::Line;
 use tabray_world::interface::{Interface, Medium};
 use tabray_world::rules::{self, Rules};
@@ -260,11 +260,16 @@ impl<'s> EnclosingTracer<'s> {
             colour =
                 per_axis(|channel| colour[channel] + surface.diffuse[channel] * N::enclosing(any(channel)));
         }
+        let alone: Colour<N> = constants(self.scene.model.objects[surface.place.object].material.highlight);
+        let specular = per_axis(|channel| surface.specular[channel] + alone[channel]);
+        let lit = HitPoints { specular, ..*surface };
         for index in self.scene.lights {
             let seen = (*index, self.lights);
             let added = match self.scene.model.lights[*index].value.emitter() {
-                None => light::contribution(self.scene, seen, surface, toward)?,
-                Some(emitter) => emitted::contribution(self.scene, seen, emitter, surface, toward)?,
+                None => light::contribution(self.scene, seen, &lit, toward)?,
+                // Highlights of lamps that mirrors show are not enclosed.
+                Some(emitter) if !emitter.has_highlights() && !is_black(&alone) => return None,
+                Some(emitter) => emitted::contribution(self.scene, seen, emitter, &lit, toward)?,
             };
             colour = per_axis(|channel| colour[channel] + added[channel]);
         }

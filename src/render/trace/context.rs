@@ -227,6 +227,8 @@ pub(super) struct LightScratch {
     pub t_max: Vec<f64>,
     /// The colours that the light sends.
     pub emissivity: VectorList,
+    /// The specular reflectivities for a lamp, where a surface has highlights of lamps alone.
+    pub speculars: VectorList,
     /// 0 where the light does not shine.
     pub shines: Vec<u64>,
     /// 1 where the light is blocked.

@@ -38,7 +38,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             Some(look) => look.diffuse != Rgb::ZERO,
             None => self.diffuses(surface, count, &mut lighting.diffuse),
         };
-        let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
+        let glances = surface.is_mirror || material.highlight != Rgb::ZERO;
+        let scatters = is_matt || material.shininess != 0.0 && glances;
         let ray_budget = group.ray_budget[0];
         // Where nothing is scattered, lights make no difference, but they are still reported to an observer.
         if scatters || W::SEES {
@@ -97,8 +98,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let light = &self.model.lights[index].value;
         let (faced, source) = self.sample_light(index, group, surface, lighting);
-        let LightScratch { diffuse, toward, strengths, t_max, emissivity, shines, blocked, shadows, .. } =
-            lighting;
+        let LightScratch { diffuse, toward, strengths, t_max, emissivity, speculars, .. } = lighting;
+        let LightScratch { shines, blocked, shadows, .. } = lighting;
         let material = &self.model.objects[surface.index].material;
         if let Some(coat) = material.coat() {
             for (lane, strength) in strengths[..count].iter_mut().enumerate() {
@@ -136,6 +137,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         } else {
             self.shadow(group, surface, &paths, t_max, shadows, blocked);
         }
+        let are_mirrored = light.emitter().is_none_or(|emitter| emitter.has_highlights());
         let lit = LitPoints {
             toward: toward.view(count),
             seen: group.dir.view(count),
@@ -147,9 +149,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 Some(sent) if !passes => Colours::Uniform(sent),
                 _ => Colours::Each(emissivity.view(count)),
             },
-            looks: surface.reflectivities(diffuse, count),
+            looks: surface.lit_by_lamp(diffuse, count, (material.highlight, are_mirrored), speculars),
         };
-        let shows_highlights = light.emitter().is_none_or(|emitter| emitter.has_highlights());
+        let shows_highlights = are_mirrored || material.highlight != Rgb::ZERO;
         let shininess = if shows_highlights { material.shininess } else { 0.0 };
         light::add_glints(cpu, &lit, shininess, colours.resized(count));
         if self.scratch.path_hashes.is_on {

@@ -215,8 +215,31 @@ impl Surface {
         self.look.map_or_else(|| self.specular.get(lane), |look| look.specular)
     }
 
+    /// Returns the reflectivities for the light of a lamp at the points, given the diffuse ones where they differ, the
+    /// highlights of lamps alone, and whether mirrors have highlights of it. `speculars` is scratch space.
+    pub fn lit_by_lamp<'s>(
+        &'s self,
+        diffuse: &'s VectorList,
+        count: usize,
+        (highlight, are_mirrored): (Rgb, bool),
+        speculars: &'s mut VectorList,
+    ) -> Reflectivities<'s> {
+        if highlight == Rgb::ZERO {
+            return self.reflectivities(diffuse, count);
+        }
+        let own = |specular: Rgb| if are_mirrored { specular + highlight } else { highlight };
+        match self.look {
+            Some(look) => Reflectivities::Uniform(Look { specular: own(look.specular), ..look }),
+            None => {
+                speculars.resized(count);
+                (0..count).for_each(|lane| speculars.set(lane, own(self.specular.get(lane))));
+                Reflectivities::Each { diffuse: diffuse.view(count), specular: speculars.view(count) }
+            }
+        }
+    }
+
     /// Returns the reflectivities at the points, given the diffuse ones where they differ.
-    pub fn reflectivities<'s>(&'s self, diffuse: &'s VectorList, count: usize) -> Reflectivities<'s> {
+    fn reflectivities<'s>(&'s self, diffuse: &'s VectorList, count: usize) -> Reflectivities<'s> {
         match self.look {
             Some(look) => Reflectivities::Uniform(look),
             None => {

@@ -52,6 +52,7 @@ pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault>
     let material = Material {
         ambient: Rgb::new(0.1, 0.5, 3.0),
         emission: Rgb::ZERO,
+        highlight: Rgb::ZERO,
         diffuse: Rgb::new(2.0, 0.7, 0.0),
         specular: Rgb::splat(0.3),
         shininess: 10.0,
@@ -265,8 +266,9 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
 
 /// Checks that a material consists of finite numbers, and that its interface continues rays as it must.
 pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
-    let Material { ambient, emission, diffuse, specular, shininess, transparency, interface } = material;
-    let is_finite = [ambient, emission, diffuse, specular].iter().all(|colour| colour.is_finite());
+    let Material { ambient, emission, diffuse, specular, highlight, shininess, transparency, interface } =
+        material;
+    let is_finite = [ambient, emission, diffuse, specular, highlight].iter().all(|colour| colour.is_finite());
     if !is_finite
         || emission.min_element() < 0.0
         || !shininess.is_finite()

@@ -171,10 +171,12 @@ fn tint(object: &Object, look: Option<&Look>, of: BoundedLight) -> f64 {
 
 /// Bounds the light of an object's own surface; under the notes' rules, times the path length to the surface.
 fn own(model: &Model, object: &Object, look: &Look, of: BoundedLight, any_light_comes: bool) -> f64 {
-    let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
+    let (specular, alone) = (look.specular.abs(), object.material.highlight.abs());
+    let [highlight, gleam] =
+        if object.material.shininess == 0.0 { [Rgb::ZERO; 2] } else { [specular + alone, alone] };
     let given = look.ambient.abs() + object.material.emission.abs();
     let ambient = if of.light.is_some() { Rgb::ZERO } else { given };
-    scattered(model, object, ambient, [look.diffuse.abs(), highlight, Rgb::ZERO], of, any_light_comes)
+    scattered(model, object, ambient, [look.diffuse.abs(), highlight, gleam], of, any_light_comes)
 }
 
 /// Bounds the highlights of a surface that are no part of its own light, and the light of lamps that its facets mirror by
@@ -187,7 +189,8 @@ fn glints(model: &Model, object: &Object, of: BoundedLight, any_light_comes: boo
     scattered(model, object, emitted, [Rgb::ZERO, highlight, gleam], of, any_light_comes)
 }
 
-/// Bounds the ambient light of an object and the light of lamps that it scatters, given its largest reflectivities.
+/// Bounds the ambient light of an object and the light of lamps that it scatters, given its largest reflectivities: the
+/// diffuse one, that for highlights, and that for highlights of lamps that mirrors show.
 fn scattered(
     model: &Model,
     object: &Object,

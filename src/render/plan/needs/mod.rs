@@ -286,7 +286,10 @@ impl KnownScene<'_> {
     fn is_black(&self, light: &Lamp, object: &Object) -> bool {
         let look: Option<Look> = object.shader.brightest(&object.material);
         let (Some(sent), Some(look)) = (light.brightest(), look) else { return false };
-        let shines = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular };
+        let shines = match object.material.shininess {
+            0.0 => Rgb::ZERO,
+            _ => look.specular.abs() + object.material.highlight,
+        };
         let is_matt_black = sent * look.diffuse == Rgb::ZERO && sent * shines == Rgb::ZERO;
         let is_mirrored = object.material.roughness() != 0.0 && super::lamps::is_aimed_at(light);
         if (object.material.glints() || is_mirrored) && sent != Rgb::ZERO {
