@@ -130,6 +130,10 @@ fn no_file_lists_the_plugins() {
     let parts =
         ["README.md", "CONTRIBUTING.md", "Cargo.toml", ".ci", "docs", "scenes", "snapshots", "src", "tests"];
     for (path, text) in parts.iter().flat_map(|part| texts(&root().join(part))) {
+        // A test makes the stub for type checkers from the tables.
+        if path.ends_with("tabray/entities.pyi") {
+            continue;
+        }
         let words: BTreeSet<_> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
         let lacks = common::registry().iter().any(|entity| !words.contains(entity.name));
         assert!(lacks, "{} names all entity types", path.display());
