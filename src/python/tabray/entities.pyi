@@ -354,6 +354,7 @@ def material(
     shininess: _Numbers = None,
     transparency: _Numbers = None,
     emission: _Numbers = None,
+    highlight: _Numbers = None,
 ) -> Entity: ...
 
 def mesh(
