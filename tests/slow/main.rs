@@ -31,6 +31,7 @@ mod plugins;
 mod proven;
 mod radiosity;
 mod same;
+mod secondary;
 mod slurm;
 mod stop;
 mod trees;
