@@ -196,9 +196,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
-        if self.counted != CountedLight::All || material.emission != Rgb::ZERO {
-            self.emit(group, surface, distances, colours);
-        } else if self.depth != 0 && self.is_aimed_at(index, object) {
+        let shares_light = self.depth != 0 && self.is_aimed_at(index, object);
+        if self.counted != CountedLight::All || material.emission != Rgb::ZERO || shares_light {
             self.emit(group, surface, distances, colours);
         }
         if self.scratch.path_hashes.is_on {
