@@ -6,7 +6,10 @@ use super::shape::{GRAZING, RayTrial, SLACK, describe_ray};
 use glam::{DVec2, DVec3};
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
+use tabray_core::geometry::sight::Sight;
+use tabray_core::world::certify::{Enclosure, Precision};
 use tabray_core::world::coincidence;
+use tabray_exact::interval::Float;
 
 /// A step that is far longer than rounding errors, and far shorter than visible details: in world units around a hit,
 /// else as a fraction of [`RayTrial::size`].
@@ -122,6 +125,14 @@ impl RayTrial<'_> {
             let ray = Ray { origin, dir: way.normalize() };
             let distance = self.distance_in_range(&ray, &RayRange::ALL)?;
             let is_farther = |slack: f64| distance > way.length() + slack;
+            // What a search gives up on, its proof leaves open: a missing hit there is no promise that none exists.
+            let is_open = || {
+                let proven = self.shape.certify(&Sight::along(&ray), Precision::Double);
+                matches!(proven, Enclosure::Doubtful(low) if low.to_f64() < way.length())
+            };
+            if distance == MISS && self.shape.is_certified() && is_open() {
+                continue;
+            }
             if is_farther(0.0) && is_farther(self.tolerance(&ray, &RayRange::ALL, distance)) {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
