@@ -3,8 +3,8 @@
 use crate::arrays::{Rows, Vectors, View, numbers};
 use crate::hits::Hits;
 use glam::DVec3;
-use numpy::ndarray::ArrayView1;
 use numpy::PyReadonlyArray1;
+use numpy::ndarray::ArrayView1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use tabray_core::query::{Query, QueryRay};

@@ -218,11 +218,12 @@ impl<'s> EnclosingTracer<'s> {
             colour = per_axis(|channel| colour[channel] + glints[channel]);
         }
         let unit = per_axis(|axis| dir[axis] / ray.length);
+        let bounces = self.scene.depth.is_some_and(|depth| !depth.scattered.is_empty());
         let is_aimed = |index: &usize| lamps::is_aimed_at(&self.scene.model.lights[*index].value);
         let facet = match (interface.roughness(), self.lights) {
             (0.0, _) | (_, LightPoints::Middle) => None,
             // The light that facets mirror by aim is only bounded.
-            _ if self.scene.lights.iter().any(is_aimed) => return self.open(ray, self.bound(ray)),
+            _ if bounces || self.scene.lights.iter().any(is_aimed) => return self.open(ray, self.bound(ray)),
             (roughness, LightPoints::Of(sample)) => {
                 Some(surface.with_facet(unit, roughness, sample.on_facet(ray.depth as u32))?)
             }

@@ -18,6 +18,7 @@ use super::surface::Surface;
 use crate::observer::TraceObserver;
 use crate::plan::Ways;
 use crate::plan::glow::Glow;
+use crate::plan::lamps::is_aimed_at;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use std::mem::take;
@@ -83,8 +84,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         let (model, plan, roughness) = (self.model, self.plan, interface.roughness());
         let lamps = plan.needs.lights.iter().filter(|_| !plan.lamps.is_empty()).filter_map(|index| {
-            let emitter = model.lights[*index].value.emitter()?;
-            (!emitter.has_highlights()).then_some(Target::Lamp(*index, emitter))
+            let light = &model.lights[*index].value;
+            light.emitter().filter(|_| is_aimed_at(light)).map(|emitter| Target::Lamp(*index, emitter))
         });
         for target in lamps.chain(plan.glow.as_ref().map(Target::Glow)) {
             let aimed = self.aim(target, group, surface);
