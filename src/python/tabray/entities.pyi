@@ -1,6 +1,6 @@
 """The entity types of the scene language: a function for each, which makes the dict of one entity."""
 
-from typing import Any, Sequence, Union
+from typing import Any, Callable, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ _Formula = Union[str, float, None]
 _Truth = Union[bool, str, None]
 
 __all__: list[str]
+
+# The entity types of plugins that this file does not know.
+def __getattr__(name: str) -> Callable[..., Entity]: ...
 
 def angular(
     name: str,
