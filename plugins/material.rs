@@ -30,6 +30,7 @@ static HIGHLIGHT: Pparm<PerChannel> = Pparm::or(
     "the reflection coefficient for highlights of lights, without mirror images",
     PerChannel(Rgb::ZERO),
 )
+.must("0 or more in each channel", |PerChannel(strength)| strength.min_element() >= 0.0)
 .not_dumped();
 static SHININESS: Pparm<f64> =
     Pparm::or("shininess", "the exponent of highlights (larger is sharper, 0 is none)", 0.0)

@@ -21,8 +21,9 @@ pub trait Emitter: Send + Sync {
 
     /// Returns the density, per unit of solid angle, with which [`sample`](Self::sample) chooses the point of the light
     /// that is seen from a point `at` along the unit vector `toward`, at a distance in world units. Rough surfaces then
-    /// look for the light in mirrored directions and by its samples, and count either by its density. `None` where
-    /// mirrored directions alone are to count, which is always correct.
+    /// look for the light in mirrored directions and by its samples, and count either by its density. The radiance is then
+    /// at most [`brightest`](crate::light::Light::brightest). `None` where mirrored directions alone are to count, which
+    /// is always correct.
     fn density(&self, _at: DVec3, _toward: DVec3, _distance: f64) -> Option<f64> {
         None
     }

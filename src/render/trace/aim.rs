@@ -4,7 +4,8 @@
 //! small surface that emits: then few samples are very bright. So each sample also aims at a point of each lamp that
 //! mirrors show, and at one of all that objects emit. What is found in a direction by either way is weighted by the
 //! density of this way among those of both: the balance heuristic (Veach, "Robust Monte Carlo Methods for Light Transport
-//! Simulation", 1997, section 9.2). Together, no sample is brighter than twice what is met.
+//! Simulation", 1997, section 9.2). So by aim, no lamp adds more to a sample than a mirror or a white surface would return
+//! that sees nothing but the lamp.
 //!
 //! Nothing is aimed at through glass, or from inside of glass that absorbs light: there, chance alone meets it, and counts
 //! it whole.
@@ -114,7 +115,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             return;
         }
         let ShadingScratch { surface, diffuse, .. } = shading;
-        let coat = self.model.objects[surface.index].material.coat();
+        let material = &self.model.objects[surface.index].material;
         let aimed = self.aim(Target::Glow(glow), group, surface);
         let Some(trees) = &self.scratch.trees else { return };
         for Aimed { lane, sample: LightSample { toward, light, .. }, density } in &aimed {
@@ -122,8 +123,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let before = &trees.wave[group.places[lane] as usize];
             if before.bounces < plan.camera.bounces && (before.depth as usize) < plan.max_depth {
                 let cosine = toward.dot(surface.normals.get(lane));
-                let passed =
-                    coat.map_or(1.0, |coat| surface.passed_by_coat(coat, lane, group.dir.get(lane), *toward));
+                let passed = surface.passed_by_coat(material, lane, group.dir.get(lane), *toward);
                 let weight = passed * cosine * density * self.part(*density, cosine / PI);
                 colours.set(lane, colours.get(lane) + weight * diffuse.get(lane) * *light);
             }

@@ -101,9 +101,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let LightScratch { diffuse, toward, strengths, t_max, emissivity, speculars, .. } = lighting;
         let LightScratch { shines, blocked, shadows, .. } = lighting;
         let material = &self.model.objects[surface.index].material;
-        if let Some(coat) = material.coat() {
+        if material.coat().is_some() {
             for (lane, strength) in strengths[..count].iter_mut().enumerate() {
-                *strength *= surface.passed_by_coat(coat, lane, group.dir.get(lane), toward.get(lane));
+                *strength *= surface.passed_by_coat(material, lane, group.dir.get(lane), toward.get(lane));
             }
         }
         if !faced.any_shines {

@@ -211,13 +211,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             };
             let goes_on = scatters && before.bounces < self.plan.camera.bounces;
             let scattered = if goes_on { self.scattered(group, surface, lane, before.depth) } else { None };
-            let passed_by_coat = |dir: DVec3| {
-                let coat = object.material.coat();
-                coat.map_or(1.0, |coat| surface.passed_by_coat(coat, lane, group.dir.get(lane), dir))
-            };
             let scattered = scattered
                 .and_then(|dir| {
-                    open(kept * passed_by_coat(dir) * diffuse.get(lane), dir, side, RayKind::Scattered)
+                    let passed = surface.passed_by_coat(&object.material, lane, group.dir.get(lane), dir);
+                    open(kept * passed * diffuse.get(lane), dir, side, RayKind::Scattered)
                 })
                 .map(|ray| OpenRay { bounces: before.bounces + 1, ..ray });
             scratch.outcomes[place].onward = [

@@ -5,11 +5,10 @@ use super::facets::Facets;
 use super::light::{Colours, Reflectivities};
 use super::tree::OpenRay;
 use glam::DVec3;
-use tabray_world::coat::Coat;
 use tabray_world::coincidence;
 use tabray_world::geometry::ray::Side;
 use tabray_world::interface::{Crossing, Interface};
-use tabray_world::material::{Look, Rgb};
+use tabray_world::material::{Look, Material, Rgb};
 use tabray_world::packets::shader::SurfacePoints;
 use tabray_world::patch::{Patch, Window};
 use tabray_world::rules;
@@ -161,9 +160,10 @@ impl Surface {
         self.facets.get(lane).map_or_else(|| self.normals.get(lane), Facets::normal)
     }
 
-    /// Returns the fraction of light that passes through a coat from a direction to the body, and from there to the start
-    /// of a ray that hits a point along `dir`.
-    pub fn passed_by_coat(&self, coat: &Coat, lane: usize, dir: DVec3, from: DVec3) -> f64 {
+    /// Returns the fraction of light that passes from a direction through the coat of a material to the body, and from
+    /// there to the start of a ray that hits a point along `dir`; 1 without a coat.
+    pub fn passed_by_coat(&self, material: &Material, lane: usize, dir: DVec3, from: DVec3) -> f64 {
+        let Some(coat) = material.coat() else { return 1.0 };
         let normal = self.smooth_normal(lane);
         coat.passed(from.dot(normal)) * coat.passed(-dir.dot(normal))
     }

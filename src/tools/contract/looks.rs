@@ -240,8 +240,10 @@ fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut
     let is_bounded =
         light.brightest().is_none_or(|most| (cosine * sent).abs().cmple((1.0 + 1e-9) * most.abs()).all());
     let density = emitter.density(at, toward, distance).zip(light.emissivity(at));
+    let is_dark = |radiance: Rgb| light.brightest().is_none_or(|most| radiance.abs().cmple(most.abs()).all());
     let agrees = density.is_none_or(|(density, radiance)| {
-        (PI * density * sent).abs_diff_eq(radiance, 1e-4 * radiance.abs().max_element())
+        let slack = 1e-4 * radiance.abs().max_element();
+        is_dark(radiance) && (PI * density * sent).abs_diff_eq(radiance, slack)
     });
     if toward.is_normalized() && distance >= 0.0 && sent.is_finite() && is_bounded && agrees {
         return Ok(());
@@ -270,7 +272,7 @@ pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
         material;
     let is_finite = [ambient, emission, diffuse, specular, highlight].iter().all(|colour| colour.is_finite());
     if !is_finite
-        || emission.min_element() < 0.0
+        || emission.min(*highlight).min_element() < 0.0
         || !shininess.is_finite()
         || !(0.0..=1.0).contains(transparency)
     {

@@ -186,8 +186,8 @@ fn surfaces(
 /// Bounds the light of rays from matt surfaces, by the number of matt surfaces before on their paths; empty where light
 /// does not bounce.
 ///
-/// Rays return at most `first`, if no matt surface passes on light, and `factor` times what each matt surface receives.
-/// Besides the ray, it receives at most `aimed` from what it aims at; the bounds include that.
+/// Where no matt surface passes on light, rays return at most `first`, and with them comes at most `aimed` from what the
+/// matt surface aims at. Beyond, rays return `factor` times what each matt surface receives.
 fn scattered(model: &Model, surfaces: &[SurfaceLight], background: f64, aimed: f64) -> Vec<f64> {
     let bounces = model.camera.value.bounces as usize;
     if bounces == 0 {
@@ -196,11 +196,11 @@ fn scattered(model: &Model, surfaces: &[SurfaceLight], background: f64, aimed: f
     let most = |surfaces: Vec<SurfaceLight>, background| {
         VisibleSurfaces::new(model, surfaces, background).bounds(false).0
     };
-    let first = most(surfaces.to_vec(), background);
+    let first = most(surfaces.to_vec(), background) + aimed;
     let factor = most(surfaces.iter().map(SurfaceLight::only_scattering).collect(), 0.0);
-    let mut all = vec![first + aimed; bounces];
+    let mut all = vec![first; bounces];
     for index in (1..bounces).rev() {
-        all[index - 1] = first + aimed + sides::gain(factor, all[index]);
+        all[index - 1] = first + sides::gain(factor, all[index]);
     }
     all
 }

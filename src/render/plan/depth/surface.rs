@@ -182,7 +182,7 @@ fn own(model: &Model, object: &Object, look: &Look, of: BoundedLight, any_light_
 /// Bounds the highlights of a surface that are no part of its own light, and the light of lamps that its facets mirror by
 /// aim, as [`own`] does.
 fn glints(model: &Model, object: &Object, of: BoundedLight, any_light_comes: bool) -> f64 {
-    // What facets mirror of a light by aim is no brighter than its surface, and samples may be twice as bright.
+    // By aim, facets mirror no more of a light than its radiance.
     let gleam = if object.material.roughness() == 0.0 { Rgb::ZERO } else { Rgb::ONE };
     let highlight = if object.material.glints() { Rgb::ONE } else { Rgb::ZERO };
     let emitted = if of.light.is_some() { Rgb::ZERO } else { gleam * glow::brightest(model) };
