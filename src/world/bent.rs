@@ -2,6 +2,7 @@
 
 use crate::body::AnyShader;
 use crate::certify::Precise;
+use crate::luminous::Luminous;
 use crate::material::{Look, Material, Rgb};
 use crate::shader::{EnclosedShader, Shader};
 use crate::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
@@ -82,6 +83,10 @@ impl<B: Bend> Shader for Bent<B> {
 
     fn emission(&self, at: &SurfacePoint) -> Rgb {
         self.colours.emission(at)
+    }
+
+    fn glowing(&self) -> Vec<(Luminous, Rgb)> {
+        self.colours.glowing()
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

@@ -1,6 +1,7 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
 use crate::certify::Precise;
+use crate::luminous::Luminous;
 use crate::material::{Look, Material, Rgb};
 use crate::patch::PatchBounds;
 use crate::simd::cpu::Cpu;
@@ -55,6 +56,13 @@ pub trait Shader: Send + Sync {
     #[inline]
     fn emission(&self, _at: &SurfacePoint) -> Rgb {
         Rgb::ZERO
+    }
+
+    /// Returns parts of the surface that give the same light everywhere, as rays aim at them, and the light of each: at
+    /// their points, [`emission`](Self::emission) is exactly this light, and at no others. None is always correct: what
+    /// gives light is then met by chance.
+    fn glowing(&self) -> Vec<(Luminous, Rgb)> {
+        Vec::new()
     }
 
     /// Calls a function with the shader of a copied object, and parts of these points in its coordinates, if this is the

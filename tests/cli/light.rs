@@ -108,6 +108,12 @@ fn light_of_surfaces_that_counts_twice_or_not_at_all_is_told() {
     let said =
         check(&format!("{EYE} }} {paint} {} {coated}", sides.replace("shader both { sides", "sides both {")));
     assert!(said.contains("the `emission` of `glow` does not count here"), "{said}");
+    // Samples aim at a ball, not at a cylinder.
+    let said = check(&format!("{EYE} bounces 2 samples 4 }} {paint} {ball}"));
+    assert!(!said.contains("chance"), "{said}");
+    let rod = "cylinder rod { material paint base 0 0 0 height 1 radius 1 }";
+    let said = check(&format!("{EYE} bounces 2 samples 4 }} {paint} {rod}"));
+    assert!(said.contains("samples meet the light of `rod` by chance alone"), "{said}");
 }
 
 #[test]

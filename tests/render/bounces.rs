@@ -144,11 +144,45 @@ fn the_emission_of_a_file_s_material_lights_a_floor() {
     let glow = "material glow { emission 3 3 3 }
                 fplane lamp { material glow point -0.5 2 -0.5 normal 0 -1 0 xdir 1 0 0 dimensions 2 1 }";
     let by_material = mean(&floor(1, glow));
-    // One is met by chance, the other by aim, too.
     assert!(
         ((by_file - by_material) / by_material).abs().max_element() < 0.02,
         "{by_file} for {by_material}"
     );
+}
+
+#[test]
+fn faces_of_a_file_that_emit_are_aimed_at_each_with_its_own_light() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("room for a file");
+    write(
+        "lamp.mtl",
+        "newmtl bright\nKd 0 0 0\nKe 9 3 1\nnewmtl dim\nKd 0 0 0\nKe 1 1 1\nnewmtl dark\nKd 0.2 0.2 0.2\n",
+    );
+    let square = |x: f64, corner: u32| {
+        let corners = [[0.0, -0.5], [0.9, -0.5], [0.9, 0.5], [0.0, 0.5]];
+        let corners = corners.map(|[right, back]| format!("v {} 1 {back}\n", x + right));
+        format!("{}f {corner} {} {} {}\n", corners.concat(), corner + 1, corner + 2, corner + 3)
+    };
+    write(
+        "lamp.obj",
+        &format!(
+            "mtllib lamp.mtl\nusemtl bright\n{}usemtl dim\n{}usemtl dark\n{}",
+            square(-1.0, 1),
+            square(0.0, 5),
+            square(1.0, 9)
+        ),
+    );
+    for lamp in [
+        "mesh lamp { material matt file lamp.obj materials file }",
+        "mesh one { material matt file lamp.obj materials file }
+         place lamp { object one rotation 20 30 0 scale 2 1 1 translation 0 0.2 0 }",
+    ] {
+        let model = model_in(folder.path(), &floor(1, lamp));
+        let by = |ways: Ways| mean_through(&Plan::new(&model).meeting_by(ways));
+        let [both, aim, chance] = [Ways::Both, Ways::Aim, Ways::Chance].map(by);
+        let off = |mean: DVec3| ((mean - both) / both).abs().max_element();
+        assert!(aim != chance && off(aim) < 0.01 && off(chance) < 0.05, "{lamp}: {both}, {aim}, {chance}");
+    }
 }
 
 #[test]

@@ -2,13 +2,13 @@
 
 use super::fault::Fault;
 use tabray_core::scene::kind::Kind;
-use tabray_core::scene::model::Model;
+use tabray_core::scene::model::{Model, Object};
 use tabray_core::scene::value::Datum;
 use tabray_core::world::material::{Material, Rgb};
 
 /// Returns what to warn of in a scene.
 pub fn warnings(model: &Model) -> impl Iterator<Item = Fault> {
-    [counted_twice(model), left_out(model)].into_iter().flatten()
+    [counted_twice(model), left_out(model), met_by_chance(model)].into_iter().flatten()
 }
 
 /// Warns of `ambient` beside `bounces`.
@@ -37,4 +37,18 @@ fn left_out(model: &Model) -> Option<Fault> {
     })?;
     let message = format!("the `emission` of `{found}` does not count here");
     Some(Fault::warning(None, message).help("only an object's own `material` gives light by `emission`"))
+}
+
+/// Warns of a surface that gives light and that no sample aims at.
+fn met_by_chance(model: &Model) -> Option<Fault> {
+    if model.camera.value.bounces == 0 {
+        return None;
+    }
+    let is_met =
+        |object: &&Object| object.material.emission != Rgb::ZERO && object.shape.luminous().is_none();
+    let name = model.objects.iter().find(is_met)?.args.name();
+    let message = format!("samples meet the light of `{name}` by chance alone, so it takes many of them");
+    Some(Fault::warning(None, message).help(
+        "samples aim at spheres, discs, rectangles, boxes and meshes with `emission`: let one of these give the light",
+    ))
 }

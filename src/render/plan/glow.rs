@@ -2,25 +2,27 @@
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
+use std::ops::Range;
 use tabray_world::emitter::LightSample;
 use tabray_world::luminous::{AimedPoint, Luminous, chosen};
-use tabray_world::material::Rgb;
+use tabray_world::material::{Look, Rgb};
 use tabray_world::scene::model::{Model, Object};
 
-/// The objects of a scene that emit light, as rays aim at them. A sample aims at one of them, in proportion to what they
-/// emit.
+/// What the objects of a scene emit, as rays aim at it. A sample aims at one of its parts, in proportion to what they emit.
 pub struct Glow {
-    objects: Vec<Glowing>,
-    /// The sums of the chances of the objects up to each, its own included, up to a factor.
+    parts: Vec<Part>,
+    /// The sums of the chances of the parts up to each, its own included, up to a factor.
     sums: Vec<f64>,
-    /// The number of each object of the scene among those that emit.
-    numbers: Vec<Option<u32>>,
+    /// The numbers of the parts of each object of the scene.
+    of_objects: Vec<Range<usize>>,
 }
 
-/// An object that emits light.
-struct Glowing {
+/// A part of an object that gives the same light everywhere.
+struct Part {
     surface: Luminous,
     radiance: Rgb,
+    /// Whether the object's material gives the light, and not its shader.
+    is_of_material: bool,
     /// The probability with which samples choose it.
     chance: f64,
 }
@@ -31,28 +33,33 @@ impl Glow {
         if model.camera.value.bounces == 0 {
             return None;
         }
-        let (mut objects, mut sums, mut sum) = (Vec::new(), Vec::new(), 0.0);
-        let mut numbers = vec![None; model.objects.len()];
-        for (number, Object { material, shape, .. }) in numbers.iter_mut().zip(&model.objects) {
-            let radiance = material.emission;
-            let surface = if radiance == Rgb::ZERO { None } else { shape.luminous() };
-            let Some(surface) = surface else { continue };
-            let power = surface.area() * radiance.max_element();
-            // Where numbers overflow, chance alone is left.
-            if power > 0.0 && power.is_finite() {
-                sum += power;
-                sums.push(sum);
-                *number = Some(objects.len() as u32);
-                objects.push(Glowing { surface, radiance, chance: power });
+        let (mut parts, mut sums, mut sum) = (Vec::new(), Vec::new(), 0.0);
+        let mut of_objects = Vec::with_capacity(model.objects.len());
+        for Object { material, shape, shader, .. } in &model.objects {
+            let start = parts.len();
+            let is_of_material = material.emission != Rgb::ZERO;
+            let own = match is_of_material {
+                true => shape.luminous().map(|surface| (surface, material.emission)).into_iter().collect(),
+                false => shader.glowing(),
+            };
+            for (surface, radiance) in own {
+                let power = surface.area() * radiance.max_element();
+                // Where numbers overflow, chance alone is left.
+                if power > 0.0 && power.is_finite() {
+                    sum += power;
+                    sums.push(sum);
+                    parts.push(Part { surface, radiance, is_of_material, chance: power });
+                }
             }
+            of_objects.push(start..parts.len());
         }
-        objects.iter_mut().for_each(|object| object.chance /= sum);
-        (!objects.is_empty() && sum.is_finite()).then_some(Self { objects, sums, numbers })
+        parts.iter_mut().for_each(|part| part.chance /= sum);
+        (!parts.is_empty() && sum.is_finite()).then_some(Self { parts, sums, of_objects })
     }
 
     /// Tells whether rays aim at an object.
     pub fn is_aimed_at(&self, object: usize) -> bool {
-        self.numbers[object].is_some()
+        !self.of_objects[object].is_empty()
     }
 
     /// Chooses a point as seen from a place with a unit normal on the object of this index, by two numbers from 0 to 1.
@@ -64,7 +71,7 @@ impl Glow {
         numbers: DVec2,
     ) -> Option<(LightSample, f64)> {
         let (index, part) = chosen(&self.sums, numbers.x)?;
-        let Glowing { surface, radiance, chance } = &self.objects[index];
+        let Part { surface, radiance, chance, .. } = &self.parts[index];
         if self.is_inside(from, index) {
             return None;
         }
@@ -78,30 +85,44 @@ impl Glow {
 
     /// Returns the density, per unit of solid angle, with which [`sample`](Self::sample) chooses the point of an object
     /// that is seen from a place on another along a unit vector, at a distance in world units, and where the object has
-    /// this unit normal; `None` where it is not aimed at from this place.
+    /// this unit normal and its shader gives this light; `None` where it is not aimed at from this place.
     pub fn density(
         &self,
-        object: usize,
+        (object, normal, light): (usize, DVec3, Rgb),
         (from, at): (Option<usize>, DVec3),
         toward: DVec3,
         distance: f64,
-        normal: DVec3,
     ) -> Option<f64> {
-        let index = self.numbers[object]? as usize;
-        let Glowing { surface, chance, .. } = &self.objects[index];
+        let is_it = |index: &usize| {
+            let Part { radiance, is_of_material, .. } = &self.parts[*index];
+            *is_of_material || *radiance == light
+        };
+        let index = self.of_objects[object].clone().find(is_it)?;
+        let Part { surface, chance, .. } = &self.parts[index];
         let is_inside = from.is_some_and(|from| self.is_inside(from, index));
         (!is_inside).then_some(chance * surface.density(at, toward, distance, normal)?)
     }
 
-    /// Tells whether rays that leave an object and meet the one of this number among those that emit are inside of a
-    /// ball, where rounding decides on which side its points lie.
+    /// Tells whether rays that leave an object and meet the part of this number are inside of a ball, where rounding
+    /// decides on which side its points lie.
     fn is_inside(&self, from: usize, index: usize) -> bool {
-        self.numbers[from] == Some(index as u32) && matches!(self.objects[index].surface, Luminous::Ball(_))
+        self.of_objects[from].contains(&index) && matches!(self.parts[index].surface, Luminous::Ball(_))
     }
 }
 
-/// Bounds what a sample that aims at a scene's objects finds: the brightest emission of any, in each channel.
-pub fn brightest(model: &Model) -> Rgb {
-    let emission = model.objects.iter().map(|object| object.material.emission);
-    if model.camera.value.bounces == 0 { Rgb::ZERO } else { emission.fold(Rgb::ZERO, Rgb::max) }
+/// Bounds what a sample that aims at a scene's objects finds, in each channel, given the objects' brightest looks.
+pub fn brightest(model: &Model, looks: &[Option<Look>]) -> Rgb {
+    if model.camera.value.bounces == 0 {
+        return Rgb::ZERO;
+    }
+    let emitted = model.objects.iter().zip(looks).map(|(Object { material, shader, .. }, look)| {
+        // What a shader gives is a part of the ambient light that it shows.
+        let own = match (shader.uniform(material), look) {
+            (Some(_), _) => Rgb::ZERO,
+            (None, Some(look)) => look.ambient.abs(),
+            (None, None) => Rgb::INFINITY,
+        };
+        material.emission + own
+    });
+    emitted.fold(Rgb::ZERO, Rgb::max)
 }

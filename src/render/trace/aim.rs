@@ -27,7 +27,6 @@ use tabray_world::emitter::{Emitter, LightSample};
 use tabray_world::geometry::aabb::{self, Aabb};
 use tabray_world::interface::Interface;
 use tabray_world::material::Rgb;
-use tabray_world::scene::model::Object;
 
 /// What rays aim at.
 #[derive(Clone, Copy)]
@@ -180,14 +179,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 
     /// Returns the part of the light of an object that counts where a ray meets it by chance at a distance, on a surface
-    /// with this normal.
+    /// with this normal, at which the object's shader gives this light.
     pub(super) fn part_by_chance(
         &self,
         group: &RayGroup,
         lane: usize,
-        object: usize,
+        (object, normal, light): (usize, DVec3, Rgb),
         distance: f64,
-        normal: DVec3,
     ) -> f64 {
         let place = group.places.get(lane.min(group.len - 1));
         let trees = self.scratch.trees.as_ref().filter(|_| self.depth != 0);
@@ -201,7 +199,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let emitter = lamp.and_then(|lamp| self.model.lights[lamp].value.emitter());
         let by_aim = match (emitter, &self.plan.glow) {
             (Some(emitter), _) => emitter.density(at, dir, distance),
-            (None, Some(glow)) => glow.density(object, (group.origin_object, at), dir, distance, normal),
+            (None, Some(glow)) => {
+                glow.density((object, normal, light), (group.origin_object, at), dir, distance)
+            }
             (None, None) => None,
         };
         match (by_aim, self.plan.ways) {
@@ -220,9 +220,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 
     /// Tells whether rays aim at an object's own light.
-    pub(super) fn is_aimed_at(&self, object: usize, of: &Object) -> bool {
+    pub(super) fn is_aimed_at(&self, object: usize) -> bool {
         self.plan.lamps.get(object).is_some_and(Option::is_some)
-            || of.material.emission != Rgb::ZERO
-                && self.plan.glow.as_ref().is_some_and(|glow| glow.is_aimed_at(object))
+            || self.plan.glow.as_ref().is_some_and(|glow| glow.is_aimed_at(object))
     }
 }

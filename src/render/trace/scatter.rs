@@ -55,24 +55,37 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let object = &self.model.objects[surface.index];
         let Object { material, shader, .. } = object;
         let is_lamp = object.args.entity().kind() == Kind::Light;
-        let is_aimed_at = self.is_aimed_at(surface.index, object);
+        let is_aimed_at = self.is_aimed_at(surface.index);
         let shows_ambient =
             self.counted == CountedLight::All || self.counted == CountedLight::EmissionAndLamps && is_lamp;
         for lane in 0..group.padded() {
+            let all = colours.get(lane);
+            if shows_ambient && !is_aimed_at {
+                colours.set(lane, all + material.emission);
+                continue;
+            }
+            let own = match (surface.look, surface.seen.get(lane)) {
+                (Some(_), _) => Rgb::ZERO,
+                (None, Some(at)) => shader.emission(at),
+                (None, None) => shader.emission(&SurfacePoint::at(surface.points.get(lane))),
+            };
             let part = if is_aimed_at {
                 let normal = surface.bent_from(lane).unwrap_or(surface.normals.get(lane));
-                self.part_by_chance(group, lane, surface.index, distances[lane], normal)
+                self.part_by_chance(group, lane, (surface.index, normal, own), distances[lane])
             } else {
                 1.0
             };
-            let ambient = match (shows_ambient, surface.look, surface.seen.get(lane)) {
-                (true, ..) if is_lamp => part * colours.get(lane),
-                (true, ..) => colours.get(lane),
-                (false, Some(_), _) => Rgb::ZERO,
-                (false, None, Some(at)) => shader.emission(at),
-                (false, None, None) => shader.emission(&SurfacePoint::at(surface.points.get(lane))),
-            };
-            colours.set(lane, ambient + part * material.emission);
+            // Rays aim at what the material gives, or else at what the shader gives.
+            let emitted =
+                if material.emission == Rgb::ZERO { part * own } else { part * material.emission + own };
+            colours.set(
+                lane,
+                match shows_ambient {
+                    true if is_lamp => part * all,
+                    true => all - own + emitted,
+                    false => emitted,
+                },
+            );
         }
     }
 

@@ -196,7 +196,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
-        let shares_light = self.depth != 0 && self.is_aimed_at(index, object);
+        let shares_light = self.depth != 0 && self.is_aimed_at(index);
         if self.counted != CountedLight::All || material.emission != Rgb::ZERO || shares_light {
             self.emit(group, surface, distances, colours);
         }

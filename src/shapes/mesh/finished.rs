@@ -9,6 +9,7 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, per_axis};
 use tabray_world::body::Warning;
 use tabray_world::certify::Precise;
+use tabray_world::luminous::{Luminous, Triangles};
 use tabray_world::material::{Look, Material, Rgb};
 use tabray_world::patch::Patch;
 use tabray_world::shader::{LookBounds, Shader};
@@ -201,6 +202,23 @@ impl Shader for Finished {
         let given =
             |finish: &Finish| finish.emission * self.light(&spot, finish.emissions.as_ref(), at.patch);
         spot.finish.map_or(Rgb::ZERO, given)
+    }
+
+    fn glowing(&self) -> Vec<(Luminous, Rgb)> {
+        let mut parts: Vec<(Rgb, Vec<[DVec3; 3]>)> = Vec::new();
+        for face in 0..if self.cuts_out { 0 } else { self.surface.face_count() } {
+            let even = self.finish(face).filter(|finish| finish.emissions.is_none());
+            let Some(light) = even.map(|finish| finish.emission).filter(|light| *light != Rgb::ZERO) else {
+                continue;
+            };
+            let corners = self.surface.corners(face);
+            match parts.iter_mut().find(|(known, _)| *known == light) {
+                Some((_, faces)) => faces.push(corners),
+                None => parts.push((light, vec![corners])),
+            }
+        }
+        let luminous = |faces: Vec<[DVec3; 3]>| Luminous::Triangles(Triangles::new(faces));
+        parts.into_iter().map(|(light, faces)| (luminous(faces), light)).collect()
     }
 
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {

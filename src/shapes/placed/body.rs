@@ -10,6 +10,7 @@ use tabray_world::body::{AnyShader, Body, MakeBoundary};
 use tabray_world::certify::Precise;
 use tabray_world::geometry::placement::Placement;
 use tabray_world::geometry::ray_packet::split;
+use tabray_world::luminous::Luminous;
 use tabray_world::material::{Look, Material, Rgb};
 use tabray_world::packets::shader::PacketShader;
 use tabray_world::patch::{Patch, PatchBounds};
@@ -96,6 +97,11 @@ impl Shader for PlacedShader {
 
     fn emission(&self, at: &SurfacePoint) -> Rgb {
         self.own().emission(&self.object_point(at))
+    }
+
+    fn glowing(&self) -> Vec<(Luminous, Rgb)> {
+        let mapped = |(part, light): (Luminous, Rgb)| Some((self.placed.mapped(&part)?, light));
+        self.own().glowing().into_iter().filter_map(mapped).collect()
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {

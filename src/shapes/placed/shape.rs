@@ -98,6 +98,11 @@ impl Placed {
         (dir < MAX_DRIFT && own.origin < MISS).then_some(own)
     }
 
+    /// Maps a surface that gives light from object space to world space.
+    pub(super) fn mapped(&self, own: &Luminous) -> Option<Luminous> {
+        own.mapped(self.to_object_space.inverse(), self.placement.translation)
+    }
+
     /// Returns a range in object space, which includes all that rounding may have moved out of it. `length` is the
     /// length of a world unit along the ray there.
     #[inline(always)]
@@ -279,8 +284,7 @@ impl Hittable for Placed {
     }
 
     fn luminous(&self) -> Option<Luminous> {
-        let to_world = self.to_object_space.inverse();
-        self.body.shape.luminous()?.mapped(to_world, self.placement.translation)
+        self.mapped(&self.body.shape.luminous()?)
     }
 
     fn method(&self) -> String {

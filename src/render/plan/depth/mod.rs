@@ -175,7 +175,7 @@ fn surfaces(
     background: f64,
 ) -> (Vec<SurfaceLight>, Vec<f64>) {
     let surfaces = SurfaceLight::all(model, looks, of);
-    let scattered = scattered(model, &surfaces, background, of.largest(glow::brightest(model)));
+    let scattered = scattered(model, &surfaces, background, of.largest(glow::brightest(model, looks)));
     let surfaces = match scattered.first() {
         Some(most) => surfaces.into_iter().map(|surface| surface.lit_by(*most)).collect(),
         None => surfaces,

@@ -58,6 +58,7 @@ impl SurfaceLight {
     /// Bounds the surfaces of a scene, given each object's brightest look, if it has one.
     pub fn all(model: &Model, looks: &[Option<Look>], of: BoundedLight) -> Vec<Self> {
         let (objects, rules) = (|| model.objects.iter().zip(looks), model.camera.value.rules);
+        let aimed = glow::brightest(model, looks);
         let tints: Vec<_> = objects().map(|(object, look)| tint(object, look.as_ref(), of)).collect();
         // With a tint above 1, many panes may let through more light than is sent.
         let any_light_comes = tints.iter().all(|tint| *tint <= 1.0);
@@ -67,7 +68,7 @@ impl SurfaceLight {
                 let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, of, any_light_comes));
                 let mut own = gain(1.0 - object.material.transparency, own) * ROUNDING;
                 if object.material.interface.is_some() {
-                    own += glints(model, object, of, any_light_comes) * ROUNDING;
+                    own += glints(model, object, aimed, of, any_light_comes) * ROUNDING;
                 }
                 let (is_split, is_free) = (object.material.interface.is_some(), rules == Rules::Free);
                 Self {
@@ -181,11 +182,11 @@ fn own(model: &Model, object: &Object, look: &Look, of: BoundedLight, any_light_
 
 /// Bounds the highlights of a surface that are no part of its own light, and the light of lamps that its facets mirror by
 /// aim, as [`own`] does.
-fn glints(model: &Model, object: &Object, of: BoundedLight, any_light_comes: bool) -> f64 {
+fn glints(model: &Model, object: &Object, aimed: Rgb, of: BoundedLight, any_light_comes: bool) -> f64 {
     // By aim, facets mirror no more of a light than its radiance.
     let gleam = if object.material.roughness() == 0.0 { Rgb::ZERO } else { Rgb::ONE };
     let highlight = if object.material.glints() { Rgb::ONE } else { Rgb::ZERO };
-    let emitted = if of.light.is_some() { Rgb::ZERO } else { gleam * glow::brightest(model) };
+    let emitted = if of.light.is_some() { Rgb::ZERO } else { gleam * aimed };
     scattered(model, object, emitted, [Rgb::ZERO, highlight, gleam], of, any_light_comes)
 }
 
