@@ -452,7 +452,9 @@ fn a_chart_ends_near_its_time_limit_and_shows_what_it_has() {
     assert!(start.elapsed() < Duration::from_secs(30), "{:?}", start.elapsed());
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     if output.status.success() {
-        assert!(text.contains("camera rays") || text.contains("grazing rays"), "{text}");
+        // Which panel is complete first depends on the machine; each has its methods and its fastest ones.
+        assert!(text.contains("Pareto front: "), "{text}");
+        assert!(text.contains("Not everything was measured: these are the results by then."), "{text}");
         assert!(said.contains("there was not enough time for all of the chart"), "{said}");
     } else {
         // On a machine with much other work.
