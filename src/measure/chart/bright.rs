@@ -59,29 +59,44 @@ pub(super) fn unbounded(plan: &Plan) -> f64 {
 }
 
 impl Bounds<'_> {
-    /// Adds the pixels of a square of the image that may show something bright. `corner` is its lower left pixel.
-    pub fn find(&self, corner: [usize; 2], side: usize, pixels: &mut Vec<([usize; 2], Cell)>) {
+    /// Adds the pixels of a square of the image that may show something bright. `corner` is its lower left pixel. Returns
+    /// the number of parts that were looked at.
+    pub fn find(&self, corner: [usize; 2], side: usize, pixels: &mut Vec<([usize; 2], Cell)>) -> usize {
         let [x, y] = corner;
         if x >= self.camera.pixels[0] || y >= self.camera.pixels[1] {
-            return;
+            return 0;
         }
         let half = 0.5 * side as f64;
-        let Some(cell) = self.cell(DVec2::new(x as f64, y as f64) + (half - 0.5), half) else { return };
+        let Some(cell) = self.cell(DVec2::new(x as f64, y as f64) + (half - 0.5), half) else { return 1 };
         if side == 1 {
-            return pixels.push((corner, cell));
+            pixels.push((corner, cell));
+            return 1;
         }
         let side = side / 2;
-        for corner in [[x, y], [x + side, y], [x, y + side], [x + side, y + side]] {
-            self.find(corner, side, pixels);
+        let corners = [[x, y], [x + side, y], [x, y + side], [x + side, y + side]];
+        1 + corners.into_iter().map(|corner| self.find(corner, side, pixels)).sum::<usize>()
+    }
+
+    /// Adds all pixels of a square of the image, without looking at them.
+    pub fn all(&self, [x, y]: [usize; 2], side: usize, pixels: &mut Vec<([usize; 2], Cell)>) {
+        let [width, height] = self.camera.pixels;
+        let most = self.known(self.bounds.most(self.camera));
+        for (x, y) in (y..height.min(y + side)).flat_map(|y| (x..width.min(x + side)).map(move |x| (x, y))) {
+            pixels.push(([x, y], Cell { middle: DVec2::new(x as f64, y as f64), half: 0.5, most }));
         }
     }
 
-    /// Returns a square with its bound; `None` if it shows nothing bright, or is white in any case.
+    /// Returns a bound on brightness, with a number for an unbounded one.
+    fn known(&self, most: f64) -> f64 {
+        if most.is_finite() { most } else { self.unbounded }
+    }
+
+    /// Returns a square with its bound; `None` if it shows nothing bright. A pixel that is white in any case can hide
+    /// nothing, but the bright part of a pixel adds to its mean.
     fn cell(&self, middle: DVec2, half: f64) -> Option<Cell> {
         let [low, high] = self.bounds.within(self.camera, middle.to_array(), half);
-        let known = |high: f64| if high.is_finite() { high } else { self.unbounded };
-        let channels = (0..3).filter(|channel| low[*channel] < 1.0);
-        let most = channels.map(|channel| known(high[channel])).fold(0.0, f64::max);
+        let channels = (0..3).filter(|channel| half < 0.5 || low[*channel] < 1.0);
+        let most = channels.map(|channel| self.known(high[channel])).fold(0.0, f64::max);
         (most > self.bright).then_some(Cell { middle, half, most })
     }
 
