@@ -77,7 +77,13 @@ pub(super) fn passed<N: Number>(
     let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
     let mut panes = Panes { at: Vec::new(), ways: Vec::new(), passed: None };
     let (mut open, mut is_blocked) = (Vec::new(), false);
-    for object in (0..objects.len()).filter(is_glass) {
+    let mut met = Vec::new();
+    scene.along(&coarse, &mut |object| {
+        met.push(object);
+        Interval::point(ends.last).coarse().high
+    });
+    met.sort_unstable();
+    for object in met.iter().copied().filter(is_glass) {
         if let Err(low) = panes.add(scene, path, object, ends) {
             panes.at.push((object, Interval { low, high: N::of(scene.leaves(&coarse, object)) }));
             open.push(object);
@@ -90,7 +96,7 @@ pub(super) fn passed<N: Number>(
         let body = &objects[*object].args;
         ptr::eq(body.entity(), source.entity()) && body.order() == source.order()
     };
-    for object in (0..objects.len()).filter(|object| !is_glass(object) && !is_source(object)) {
+    for object in met.into_iter().filter(|object| !is_glass(object) && !is_source(object)) {
         scene.hits(path, &coarse, object, &mut |hit, _| {
             match hit {
                 Hit::Certain(at) if at.range().high < ends.first && !panes.are_at(at.range()) => {

@@ -111,7 +111,9 @@ impl<'s> EnclosingTracer<'s> {
                 return self.open(ray, most);
             }
         }
-        let (places, is_something) = self.scene.first(&ray.path);
+        let Some((places, is_something)) = self.scene.first(&ray.path) else {
+            return self.open(ray, self.bound(ray));
+        };
         let is_hopeless = places.iter().any(|(hit, place)| {
             let is_doubtful = matches!(hit, Hit::Doubtful(_));
             is_doubtful && ray.weight * self.bound_at(ray, hit, *place) > self.limits.tolerable

@@ -5,9 +5,13 @@ use crate::plan::depth::{self, Depth};
 use std::cell::Cell;
 use tabray_exact::interval::{Float, Interval};
 use tabray_world::geometry::aabb::Aabb;
+use tabray_world::geometry::bvh::Bvh;
 use tabray_world::geometry::sight::Line;
 use tabray_world::patch::Window;
 use tabray_world::scene::model::Model;
+
+/// The number of places that a ray may hit from which on no others are looked for: far more than are followed.
+const CROWD: usize = 48;
 
 /// A colour.
 pub type Colour<N> = [N; 3];
@@ -31,10 +35,16 @@ pub(super) struct Path<N> {
     pub is_inside: bool,
 }
 
+/// The first hits that lines may have, and whether each line certainly has one.
+pub(super) type FirstHits<N> = (Vec<(Hit<N>, Place)>, bool);
+
 /// What is known of a model's colours before any ray is followed.
 pub struct SceneBounds {
     /// A box around each object that has bounds.
     boxes: Vec<Option<Aabb>>,
+    /// The hierarchy of these boxes, and the other objects.
+    tree: Bvh,
+    unbounded: Vec<usize>,
     /// A bound on any channel of what a primary ray returns, times the path length; infinite where there is none.
     pub(super) most: f64,
     /// Whether the fraction of each channel that glass lets pass is known to lie between 0 and 1.
@@ -44,8 +54,15 @@ pub struct SceneBounds {
 impl SceneBounds {
     /// Returns the bounds of a model.
     pub fn of(model: &Model) -> Self {
+        let boxes: Vec<_> = model.objects.iter().map(|object| object.shape.bounds()).collect();
+        let (bounded, unbounded): (Vec<_>, Vec<_>) =
+            (0..boxes.len()).partition(|object| boxes[*object].is_some());
+        let mut tree = Bvh::new(&boxes.iter().flatten().copied().collect::<Vec<_>>());
+        tree.rename(|place| bounded[place as usize] as u32);
         Self {
-            boxes: model.objects.iter().map(|object| object.shape.bounds()).collect(),
+            boxes,
+            tree,
+            unbounded,
             most: depth::most(model),
             passes_fractions: model.tints_are_fractions(),
         }
@@ -76,6 +93,19 @@ impl EnclosedScene<'_> {
         }
     }
 
+    /// Calls `visit` with the objects that lines may hit, those with bounds roughly by distance. It returns the t beyond
+    /// which objects no longer matter.
+    pub(super) fn along(&self, coarse: &Line<Interval>, visit: &mut dyn FnMut(usize) -> f64) {
+        self.bounds.unbounded.iter().for_each(|object| _ = visit(*object));
+        self.bounds.tree.along(coarse, visit);
+    }
+
+    /// Returns a t before which lines have no hit with an object; `None` if they have none.
+    fn enters(&self, coarse: &Line<Interval>, object: usize) -> Option<f64> {
+        let Some(Aabb { low, high }) = self.bounds.boxes[object] else { return Some(0.0) };
+        coarse.clip(low, high).map(|(from, _)| from)
+    }
+
     /// Calls `met` with the possible hits of all lines with an object, until `met` returns false. `coarse` encloses the
     /// lines. Returns whether `met` never returned false.
     pub(super) fn hits<N: Number>(
@@ -85,11 +115,7 @@ impl EnclosedScene<'_> {
         object: usize,
         met: &mut dyn FnMut(Hit<N>, Place) -> bool,
     ) -> bool {
-        let from = match self.bounds.boxes[object].map(|Aabb { low, high }| coarse.clip(low, high)) {
-            None => 0.0,
-            Some(Some((from, _))) => from,
-            Some(None) => return true,
-        };
+        let Some(from) = self.enters(coarse, object) else { return true };
         let leaves = path.leaves.filter(|place| place.object == object).map(|place| place.part);
         let Some(proven) = self.model.objects[object].shape.proven() else {
             return met(Hit::Doubtful(N::of(from)), Place { object, part: 0 });
@@ -108,11 +134,11 @@ impl EnclosedScene<'_> {
         around.map_or(f64::INFINITY, |(_, to)| to)
     }
 
-    /// Returns the first hits that lines may have, and whether each line certainly has one.
-    pub(super) fn first<N: Number>(&self, path: &Path<N>) -> (Vec<(Hit<N>, Place)>, bool) {
+    /// Returns the first hits of lines; `None` where they are a crowd.
+    pub(super) fn first<N: Number>(&self, path: &Path<N>) -> Option<FirstHits<N>> {
         let (mut all, mut end) = (Vec::new(), N::End::INFINITY);
         let coarse = coarse(&path.line);
-        for object in 0..self.model.objects.len() {
+        self.along(&coarse, &mut |object| {
             self.hits(path, &coarse, object, &mut |hit, place| {
                 if let Hit::Certain(at) = hit {
                     end = end.min(at.range().high);
@@ -120,7 +146,16 @@ impl EnclosedScene<'_> {
                 all.push((hit, place));
                 true
             });
+            if all.len() >= CROWD {
+                all.retain(|(hit, _)| hit.low() <= end);
+            }
+            if all.len() < CROWD { Interval::point(end).coarse().high } else { f64::NEG_INFINITY }
+        });
+        if all.len() >= CROWD {
+            return None;
         }
+        // They were found by distance.
+        all.sort_by_key(|(_, place)| place.object);
         all.retain(|(hit, _)| hit.low() <= end);
         // Of several hits at exactly the same distance, the one of the first object in the file is seen.
         if let Some((first @ Hit::Certain(at), _)) = all.first().copied()
@@ -132,6 +167,6 @@ impl EnclosedScene<'_> {
         if !matches!(all[..], [(Hit::Certain(_), _)]) {
             all.iter().for_each(|(_, place)| self.note_open(place.object));
         }
-        (all, end < N::End::INFINITY)
+        Some((all, end < N::End::INFINITY))
     }
 }
