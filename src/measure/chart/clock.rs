@@ -10,7 +10,7 @@ use tabray_tools::clock;
 /// The maximum number of rounds.
 const MAX_ROUNDS: usize = 15;
 
-/// The minimum number of rounds, however long they take.
+/// The minimum number of rounds of the usual work, however long they take.
 const MIN_ROUNDS: usize = 3;
 
 /// The time that one choice may take in all its rounds.
@@ -36,28 +36,33 @@ pub fn rounds(
     progress: &mut dyn Progress,
 ) -> ControlFlow<(), Vec<Times>> {
     let patience = CHOICE_TIME.mul_f64(effort);
+    let min_rounds = if effort < 1.0 { 1 } else { MIN_ROUNDS };
     let mut repeats = vec![1_u32; choices];
     let mut all = vec![Vec::new(); choices];
     let mut waits = vec![Duration::ZERO; choices];
-    // The first round warms up the caches and tells how long the work takes.
-    for (choice, repeats) in repeats.iter_mut().enumerate() {
-        let (took, _) = time(|| work(choice));
-        *repeats = (MIN_DURATION.as_nanos() / took.as_nanos().max(1)).clamp(1, 1000) as u32;
+    // The first round warms up the caches and tells how long the work takes. It counts where that is long.
+    for choice in 0..choices {
+        let (took, waited) = time(|| work(choice));
+        repeats[choice] = (MIN_DURATION.as_nanos() / took.as_nanos().max(1)).clamp(1, 1000) as u32;
+        if took > patience {
+            all[choice].push(took);
+            waits[choice] = waited;
+        }
         progress.done(UNITS / (MAX_ROUNDS + 1))?;
     }
-    'rounds: for round in 0..MAX_ROUNDS {
+    'rounds: for _ in 0..MAX_ROUNDS {
         for choice in 0..choices {
             let spent: Duration = all[choice].iter().sum::<Duration>() * repeats[choice];
-            if round < MIN_ROUNDS || spent < patience {
+            if all[choice].len() < min_rounds || spent < patience {
                 let (took, waited) = time(|| (0..repeats[choice]).for_each(|_| work(choice)));
                 all[choice].push(took / repeats[choice]);
                 waits[choice] += waited / repeats[choice];
             }
-            let is_broken_off = progress.done(UNITS / (MAX_ROUNDS + 1)).is_break();
-            if is_broken_off && round == 0 {
-                return ControlFlow::Break(());
-            } else if is_broken_off {
-                break 'rounds;
+            if progress.done(UNITS / (MAX_ROUNDS + 1)).is_break() {
+                match all.iter().any(Vec::is_empty) {
+                    true => return ControlFlow::Break(()),
+                    false => break 'rounds,
+                }
             }
         }
     }

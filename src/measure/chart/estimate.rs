@@ -112,7 +112,8 @@ fn estimates_by(
     // The most exact of the accuracies is the truth.
     let right = if matches!(own, Accuracy::Exact | Accuracy::Strict) { 0 } else { 1 };
     let mut truth = plan(models[right].1);
-    let mut small = SmallThings::find(&truth, &threads, (goal.error(), is_certain), confirm::FEWEST);
+    let wanted = (goal.error(), is_certain);
+    let mut small = SmallThings::find(&truth, &threads, wanted, (confirm::FEWEST, effort), progress)?;
     small.measure(&mut truth, &threads, (goal.error(), part(SMALL[usize::from(is_certain)])), progress)?;
     let found = small.pixels();
     let special = if small.is_measured() { [&found[..], &[]] } else { [&[], &found[..]] };

@@ -204,8 +204,11 @@ pub fn samples(
     for choice in &choices {
         choice.set(&mut plan);
         let colours = match seen {
-            SampledEffect::Picture => traced::apart(threads, &plan, &pixels).0,
-            SampledEffect::Shadows => each(threads, &pixels, |x, y| shadowed(&plan, [x, y])),
+            // A single sample is in the middle of its pixel.
+            SampledEffect::Shadows if choice.samples > 1 => {
+                means(threads, &plan, &pixels, (*choice, 0), seen)
+            }
+            _ => traced::apart(threads, &plan, &pixels).0,
         };
         differences.push(difference(&plan.camera.display(), &colours, &right));
         progress.done(study.part(TRUE_TESTS) / 40 / choices.len())?;
@@ -308,15 +311,9 @@ fn truth(
     progress: &mut dyn Progress,
 ) -> ControlFlow<(), Vec<Rgb>> {
     let mut colours = Vec::new();
-    let camera = &plan.camera;
-    let colour = |x: usize, y: usize| {
-        let pixel = !((y * camera.pixels[0] + x) as u32);
-        let sample = |index| Sample { sampler: Sampler::Sobol, index, pixel };
-        let one = |index| colour_of(plan, [x, y], sample(index), seen);
-        (0..TRUE_SAMPLES).map(one).sum::<Rgb>() / f64::from(TRUE_SAMPLES)
-    };
+    let samples = Samples { sampler: Sampler::Sobol, samples: TRUE_SAMPLES, adaptive: None };
     for part in pixels.chunks(pixels.len().div_ceil(100)) {
-        colours.extend(each(&study.threads, part, colour));
+        colours.extend(means(&study.threads, plan, part, (samples, !0), seen));
         progress.done(study.part(TRUE_TESTS) / 10 * part.len() / pixels.len())?;
         if progress.is_late() && colours.len() >= FEWEST {
             break;
@@ -325,36 +322,29 @@ fn truth(
     ControlFlow::Continue(colours)
 }
 
-/// Returns a pixel's colour with the camera's samples, all of them through its centre.
-fn shadowed(plan: &Plan, [x, y]: [usize; 2]) -> Rgb {
-    let camera = &plan.camera;
-    if camera.samples == 1 {
-        return trace::colour(plan, &camera.sight(x as f64, y as f64), None);
-    }
-    let pixel = (y * camera.pixels[0] + x) as u32;
-    let sample = |index| Sample { sampler: camera.sampler, index, pixel };
-    let colours =
-        (0..camera.samples).map(|index| colour_of(plan, [x, y], sample(index), SampledEffect::Shadows));
-    colours.sum::<Rgb>() / f64::from(camera.samples)
-}
-
-/// Returns the colour of one sample of a pixel.
-fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: SampledEffect) -> Rgb {
-    let jitter = match seen {
-        SampledEffect::Picture => sample.jitter(),
-        SampledEffect::Shadows => DVec2::ZERO,
-    };
-    let sight = plan.camera.sight_of(DVec2::new(x as f64, y as f64) + jitter, Some(&sample));
-    trace::colour(plan, &sight, Some(sample))
-}
-
-/// Maps these pixels on all threads of a renderer.
-fn each<T: Send>(
+/// Returns the mean colours of pixels with these samples, of sequences that the number tells from others.
+fn means(
     threads: &Renderer,
+    plan: &Plan,
     pixels: &[[usize; 2]],
-    work: impl Fn(usize, usize) -> T + Sync + Send,
-) -> Vec<T> {
-    threads.run(|| parallel::map(pixels.len(), |index| work(pixels[index][0], pixels[index][1])))
+    (Samples { sampler, samples, .. }, seed): (Samples, u32),
+    seen: SampledEffect,
+) -> Vec<Rgb> {
+    let width = plan.camera.pixels[0];
+    let of_pixel = |[x, y]: [usize; 2]| {
+        let pixel = (y * width + x) as u32 ^ seed;
+        let place = |index| {
+            let sample = Sample { sampler, index, pixel };
+            let jitter = match seen {
+                SampledEffect::Picture => sample.jitter(),
+                SampledEffect::Shadows => DVec2::ZERO,
+            };
+            (DVec2::new(x as f64, y as f64) + jitter, sample)
+        };
+        (0..samples).map(place).collect()
+    };
+    let mean = |colours: Vec<Rgb>| colours.iter().sum::<Rgb>() / f64::from(samples);
+    traced::places(threads, plan, pixels, of_pixel).into_iter().map(mean).collect()
 }
 
 /// Returns the mean number of object tests for one ray through a pixel and all rays that follow from it.
@@ -371,12 +361,13 @@ pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     }
     const PIXELS: usize = 400;
     let pixels = spread(plan.camera.pixels, PIXELS);
-    let count = |x: usize, y: usize| {
+    let count = |index: usize| {
+        let [x, y] = pixels[index];
         let mut tests = Tests(0);
         trace::observe_colour(plan, &plan.camera.sight(x as f64, y as f64), None, &mut tests);
         tests.0
     };
-    let all: usize = each(threads, &pixels, count).into_iter().sum();
+    let all: usize = threads.run(|| parallel::map(pixels.len(), count)).into_iter().sum();
     (all as f64 / pixels.len() as f64).max(1.0)
 }
 

@@ -29,13 +29,16 @@ use tabray_tools::sampling::right::{Right, SCRAMBLES};
 /// bright must take a large part of a pixel, or of many pixels, to matter, and then samples see it.
 const BRIGHT: [f64; 2] = [4.0, 64.0];
 
-/// The least number of squares that are looked at first, and the part of them, one in this many; and the part of their
+/// The least number of squares that are looked at at once, and the part of them, one in this many; and the part of the first
 /// pixels, one in this many, from which on small things may be everywhere.
 const TRIED: usize = 32;
 const TOO_MANY: usize = 2;
 
 /// The width in pixels of the squares that are looked at first.
 const SQUARE: usize = 8;
+
+/// The usual number of parts of the image that are looked at.
+const LOOKS: f64 = 65_536.0;
 
 /// The greatest number of pixels that are cut into cells.
 const CUT: usize = 500;
@@ -97,8 +100,17 @@ impl SmallThings {
 
     /// Finds the pixels of a plan's image with things that together change the image by more than an error. `samples`
     /// is the number of samples of each measured pixel. Without bounds, finds none if that would be a large part of the
-    /// pixels: to know them would not help.
-    pub fn find(plan: &Plan, threads: &Renderer, (error, is_certain): (f64, bool), samples: u32) -> Self {
+    /// pixels: to know them would not help. What this part of the usual work leaves out counts as found.
+    ///
+    /// # Errors
+    /// Returns `Interrupted` if `progress` breaks off.
+    pub fn find(
+        plan: &Plan,
+        threads: &Renderer,
+        (error, is_certain): (f64, bool),
+        (samples, effort): (u32, f64),
+        progress: &mut dyn Progress,
+    ) -> io::Result<Self> {
         let camera = &plan.camera;
         let [width, height] = camera.pixels;
         let bounds = Brightness::new(plan.model);
@@ -109,25 +121,35 @@ impl SmallThings {
         let bright = f64::from(samples) * if matters < 1.0 { matters.sqrt() } else { matters } / SURE;
         let bright = bright.clamp(BRIGHT[0], BRIGHT[1]);
         if bounds.most(camera) <= bright {
-            return found;
+            return Ok(found);
         }
         let bounds = Bounds { bounds, camera, bright, unbounded: unbounded(plan) };
         let sides = camera.pixels.map(|side| side.div_ceil(SQUARE));
         let drawing = Drawing::new(sides);
         let squares: Vec<_> =
             (0..sides[0] * sides[1]).map(|index| drawing.at(index).map(|side| side * SQUARE)).collect();
-        let part = |range: Range<usize>| {
-            let mut pixels = Vec::new();
-            squares[range].iter().for_each(|square| bounds.find(*square, SQUARE, &mut pixels));
-            pixels
-        };
-        let first = squares.len().min(TRIED.max(squares.len() / TRIED));
-        let mut whole = threads.run(|| parallel::map_ranges(first, 2, &part));
-        if !is_certain && TOO_MANY * whole.len() > first * SQUARE * SQUARE {
-            return found;
+        let first = TRIED.max(squares.len() / TRIED);
+        let (mut whole, mut looked_at, mut rest) = (Vec::new(), 0, &squares[..]);
+        while !rest.is_empty() && looked_at as f64 <= effort * LOOKS && !progress.is_late() {
+            let (part, others) = rest.split_at(first.min(rest.len()));
+            let one = |index: usize| {
+                let mut pixels = Vec::new();
+                (bounds.find(part[index], SQUARE, &mut pixels), pixels)
+            };
+            for (looks, pixels) in threads.run(|| parallel::map(part.len(), one)) {
+                looked_at += looks;
+                whole.extend(pixels);
+            }
+            let is_first = rest.len() == squares.len();
+            if !is_certain && is_first && TOO_MANY * whole.len() > part.len() * SQUARE * SQUARE {
+                return Ok(found);
+            }
+            if progress.done(0).is_break() {
+                return Err(io::ErrorKind::Interrupted.into());
+            }
+            rest = others;
         }
-        let rest = |range: Range<usize>| part(range.start + first..range.end + first);
-        whole.extend(threads.run(|| parallel::map_ranges(squares.len() - first, 2, &rest)));
+        rest.iter().for_each(|square| bounds.all(*square, SQUARE, &mut whole));
         whole.sort_by_key(|([x, y], _)| [*y, *x]);
         let is_cut = whole.len() <= CUT;
         let cells = |index: usize| if is_cut { bounds.cut(whole[index].1) } else { vec![whole[index].1] };
@@ -137,7 +159,7 @@ impl SmallThings {
             (!cells.is_empty()).then_some(SmallPixel { at, cells, rest: [(Rgb::ZERO, 0); 2], sums, count: 0 })
         };
         found.pixels = whole.into_iter().zip(cells).filter_map(pixel).collect();
-        found
+        Ok(found)
     }
 
     /// Returns the pixels, by column and row.

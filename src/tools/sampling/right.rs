@@ -1,17 +1,10 @@
 //! The colours of pixels that others are compared with.
 
 use super::traced;
-use glam::DVec2;
-use std::ops::Range;
-use tabray_core::parallel;
-use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
-use tabray_core::render::trace::{Scratch, Tracer};
-use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::SCRAMBLE;
-use tabray_core::world::sample::Sample;
 
 /// The seeds of the samples of the two images whose mean counts as right. They share no samples with a render or with
 /// each other.
@@ -53,18 +46,10 @@ pub fn pairs_and_errors(
     let [ones, others] = seeds.map(|seed| {
         plan.camera.scramble = own ^ seed;
         let plan = &*plan;
-        let part = |range: Range<usize>| {
-            let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
-            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
-            let colours = |[x, y]: &[usize; 2]| {
-                let places = plan.camera.places(*x, *y, samples);
-                let places: Vec<(DVec2, Sample)> =
-                    places.filter_map(|(place, sample)| Some((place, sample?))).collect();
-                tracer.places(&places)
-            };
-            pixels[range].iter().map(colours).collect::<Vec<_>>()
-        };
-        threads.run(|| parallel::map_ranges(pixels.len(), 1, &part))
+        traced::places(threads, plan, pixels, |[x, y]| {
+            let places = plan.camera.places(x, y, samples);
+            places.filter_map(|(place, sample)| Some((place, sample?))).collect()
+        })
     });
     (plan.camera.scramble, plan.camera.samples) = (own, count);
     let mean = |colours: &[Rgb]| display.shown(colours.iter().sum::<Rgb>() / colours.len() as f64);

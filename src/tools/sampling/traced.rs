@@ -2,8 +2,10 @@
 
 use super::places::Pixels;
 use crate::clock;
+use glam::DVec2;
 use std::hint::black_box;
 use std::mem::replace;
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
@@ -14,6 +16,7 @@ use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace::{Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
+use tabray_core::world::sample::Sample;
 
 /// The time of a group, in seconds, below which the first use of scratch space matters.
 const SHORT: f64 = 1e-3;
@@ -99,6 +102,22 @@ pub fn apart(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb
     let groups = groups(threads, plan, &pixels.chunks(at_once).collect::<Vec<_>>());
     let samples = groups.iter().map(|group| group.rays.samples).collect();
     (groups.into_iter().flat_map(|group| group.colours).collect(), samples)
+}
+
+/// Traces places of the image with their samples, those of each of these pixels together, and returns the colours of each
+/// pixel, before they are clamped.
+pub fn places(
+    threads: &Renderer,
+    plan: &Plan,
+    pixels: &[[usize; 2]],
+    of_pixel: impl Fn([usize; 2]) -> Vec<(DVec2, Sample)> + Sync,
+) -> Vec<Vec<Rgb>> {
+    let part = |range: Range<usize>| {
+        let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
+        pixels[range].iter().map(|pixel| tracer.places(&of_pixel(*pixel))).collect::<Vec<_>>()
+    };
+    threads.run(|| parallel::map_ranges(pixels.len(), 1, &part))
 }
 
 /// Returns the colours of pixels that may lie far apart, as they are shown.
