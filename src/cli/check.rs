@@ -6,6 +6,7 @@ use crate::options::set;
 use crate::process::failure::{Failure, report, status};
 use crate::process::messages;
 use std::path::PathBuf;
+use std::sync::Arc;
 use tabray_core::text;
 use tabray_lang::reader;
 use tabray_lang::registry::Registry;
@@ -40,7 +41,7 @@ fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         match input::load(registry, scene, &args.set, None) {
             Ok(model) => {
                 if !reader::is_black(&model) {
-                    messages::remark(diagnosis::tried(&model));
+                    messages::remark(diagnosis::tried(Arc::new(model)));
                 }
                 messages::note(&format!("{}: no errors", text::shown(scene)));
             }

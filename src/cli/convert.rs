@@ -8,6 +8,7 @@ use crate::options::scene;
 use crate::process::failure::{Failure, print_scene};
 use crate::process::messages;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use tabray_core::scene::model::Model;
 use tabray_core::text;
 use tabray_lang::dump;
@@ -55,9 +56,9 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if let Some(text) = &imported {
         source = Source::of_text(&args.scene.path.with_extension("ray"), text.clone(), &args.scene.set);
     }
-    let model = input::print_warnings(source.load(registry, None))?.model;
+    let model = Arc::new(input::print_warnings(source.load(registry, None))?.model);
     if imported.is_some() {
-        messages::remark(diagnosis::tried(&model));
+        messages::remark(diagnosis::tried(Arc::clone(&model)));
     }
     // What was written for people to read stays as it is.
     let readable = imported.filter(|_| syntax == Syntax::Notes && args.scene.set.values.is_empty());

@@ -2,9 +2,10 @@
 
 use super::field::Field;
 use super::rational::Rational;
-use super::step::{Function, Step, fold};
+use super::step::{Function, Step, StepKey, fold};
 use super::{Formula, value_of};
 use crate::text;
+use std::collections::HashMap;
 use std::mem::take;
 use std::sync::Arc;
 
@@ -61,6 +62,8 @@ impl Field {
 #[derive(Default)]
 struct Factors<'s> {
     powers: Vec<(&'s [Step], u32)>,
+    /// The places of the factors in this list.
+    places: HashMap<Vec<StepKey>, usize>,
 }
 
 impl<'s> Factors<'s> {
@@ -88,7 +91,9 @@ impl<'s> Factors<'s> {
                 self.add(operands, power.saturating_mul(exponent.unsigned_abs()))
             }
             _ => {
-                match self.powers.iter_mut().find(|(factor, _)| *factor == of) {
+                let new = self.powers.len();
+                let place = *self.places.entry(of.iter().map(|step| step.key()).collect()).or_insert(new);
+                match self.powers.get_mut(place) {
                     Some((_, known)) => *known = known.saturating_add(power),
                     None => self.powers.push((of, power)),
                 }

@@ -1,9 +1,8 @@
 //! Formulas as programs: operations on registers. Equal operations are carried out only once.
 
-use super::step::{Function, MAX_DEPTH, Step, fold};
+use super::step::{Function, MAX_DEPTH, Step, StepKey, fold};
 use super::variables::SURFACE;
 use std::collections::HashMap;
-use std::mem::{Discriminant, discriminant};
 
 /// An operation: reads up to three registers, and writes one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,15 +55,8 @@ pub(super) struct Values {
 
 impl Value {
     /// Returns a key that is equal for equal values.
-    fn key(&self) -> (Discriminant<Step>, u64, [usize; 3]) {
-        let payload = match self.step {
-            Step::Number(number) | Step::Scale(number) | Step::Shift(number) => number.to_bits(),
-            Step::Variable(index) => index.into(),
-            Step::Powi(exponent) => exponent as u64,
-            Step::Call(function) => function as u64,
-            Step::Neg | Step::Add | Step::Sub | Step::Mul | Step::Div | Step::Spline => 0,
-        };
-        (discriminant(&self.step), payload, self.operands)
+    fn key(&self) -> (StepKey, [usize; 3]) {
+        (self.step.key(), self.operands)
     }
 
     /// Returns the operands of the operation.
@@ -163,13 +155,19 @@ impl Values {
     /// such pair.
     fn paired(&self, variables: usize) -> Option<Self> {
         let list = &self.list;
+        let mut known = HashMap::new();
+        for (index, value) in list.iter().enumerate() {
+            if let Step::Call(Function::Sin | Function::Cos) = value.step {
+                known.entry(value.key()).or_insert(index);
+            }
+        }
         let pairs = list.iter().map(|value| {
             let other = match value.step {
                 Step::Call(Function::Sin) => Function::Cos,
                 Step::Call(Function::Cos) => Function::Sin,
                 _ => return None,
             };
-            list.iter().position(|of| of.step == Step::Call(other) && of.operands == value.operands)
+            known.get(&Value { step: Step::Call(other), ..*value }.key()).copied()
         });
         let pairs: Vec<_> = pairs.collect();
         pairs.iter().flatten().next()?;

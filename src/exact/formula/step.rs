@@ -2,6 +2,7 @@
 
 use crate::scalar::{Scalar, apart, apart_if};
 use crate::spline::Spline;
+use std::mem::{Discriminant, discriminant};
 
 /// The minimum size of a number, in bytes, at which each operation is a call.
 const LONG: usize = 64;
@@ -28,7 +29,22 @@ pub(super) enum Step {
     Call(Function),
 }
 
+/// A key of an operation.
+pub(super) type StepKey = (Discriminant<Step>, u64);
+
 impl Step {
+    /// Returns a key that is equal for equal operations.
+    pub fn key(self) -> StepKey {
+        let payload = match self {
+            Self::Number(number) | Self::Scale(number) | Self::Shift(number) => number.to_bits(),
+            Self::Variable(index) => index.into(),
+            Self::Powi(exponent) => exponent as u64,
+            Self::Call(function) => function as u64,
+            Self::Neg | Self::Add | Self::Sub | Self::Mul | Self::Div | Self::Spline => 0,
+        };
+        (discriminant(&self), payload)
+    }
+
     /// Returns the number of operands.
     #[inline(always)]
     pub fn operands(self) -> usize {

@@ -2,9 +2,13 @@
 
 mod survey;
 
+use crate::clock;
 use crate::threads::renderer_with;
 use glam::DVec3;
 use std::ops::Range;
+use std::sync::{Arc, mpsc};
+use std::thread;
+use std::time::Duration;
 use survey::Survey;
 use tabray_core::exact::interval::Interval;
 use tabray_core::geometry::aabb::Aabb;
@@ -51,6 +55,13 @@ const MAX_DEPTH: usize = 4;
 /// The maximum number of pixels that are tried with all reflections and transmissions, if the image is black with fewer.
 /// Between mirrors, such a pixel may take thousands of rays.
 const MAX_DEEP: usize = 80;
+
+/// The number of pixels that are tried at once.
+const AT_ONCE: usize = 8;
+
+/// The CPU time after which no further pixels are tried, and the time after which they are not waited for.
+const PATIENCE: Duration = Duration::from_millis(1500);
+const LAST: Duration = Duration::from_secs(6);
 
 /// Something about an image that its author hardly meant.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,10 +147,14 @@ fn unlit(model: &Model, places: &[[usize; 2]], levels: &Levels) -> Option<Remark
     })
 }
 
-/// Returns the remark on a model's image, from a few of its pixels.
-pub fn tried(model: &Model) -> Option<Remark> {
+/// Returns the remark on a model's image, from a few of its pixels; none where these take too long.
+pub fn tried(model: Arc<Model>) -> Option<Remark> {
     // The deepest reflections need more of a stack than the program's own thread has.
-    renderer_with(1).ok()?.run(|| tried_here(model))
+    let renderer = renderer_with(1).ok()?;
+    let (sender, remark) = mpsc::channel();
+    // A single pixel of a very long formula may take minutes. It is not waited for, and ends with the program.
+    thread::spawn(move || sender.send(renderer.run(|| tried_here(&model))));
+    remark.recv_timeout(LAST).ok().flatten()
 }
 
 fn tried_here(model: &Model) -> Option<Remark> {
@@ -149,20 +164,30 @@ fn tried_here(model: &Model) -> Option<Remark> {
     plan.set_adaptive(None);
     plan.camera.samples = 1;
     let places = places(&plan.camera, part, GRID);
+    let start = clock::now();
     let levels = |plan: &Plan, places: &[[usize; 2]]| {
         let (mut scratch, mut nobody, mut levels) = (Scratch::default(), Flaws::default(), Levels::default());
         let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
-        let (colours, display) = (tracer.pixels(places), plan.camera.display());
-        (0..places.len()).for_each(|index| levels.add(&display.bytes(colours.get(index))));
-        levels
+        let (display, mut traced) = (plan.camera.display(), 0);
+        while traced < places.len() {
+            // Few enough that the time is checked in time.
+            let some = &places[traced..places.len().min(traced + AT_ONCE)];
+            let colours = tracer.pixels(some);
+            (0..some.len()).for_each(|index| levels.add(&display.bytes(colours.get(index))));
+            traced += some.len();
+            if clock::now() - start > PATIENCE {
+                return None;
+            }
+        }
+        Some(levels)
     };
     plan.max_depth = MAX_DEPTH;
-    let mut found = levels(&plan, &places);
+    let mut found = levels(&plan, &places)?;
     plan.max_depth = usize::MAX;
     if found.brightest < DARK && plan.depth.is_some() {
         let step = places.len().div_ceil(MAX_DEEP).max(1);
         let few: Vec<_> = places.iter().skip(step / 2).step_by(step).copied().collect();
-        found = levels(&plan, &few);
+        found = levels(&plan, &few)?;
     }
     remark_on("the image seems to be", &plan, part, &found)
 }
