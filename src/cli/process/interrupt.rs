@@ -12,7 +12,7 @@ use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
@@ -20,6 +20,10 @@ static ACTION: Mutex<InterruptAction> = Mutex::new(InterruptAction::SetFlag);
 
 /// The time that a command with [`InterruptAction::SetFlagThenExit`] has to stop by itself.
 const PATIENCE: Duration = Duration::from_millis(800);
+
+/// The time within which a second signal is the same interruption: `timeout` sends one to the program, and then one to its
+/// process group.
+const TWICE: Duration = Duration::from_millis(100);
 
 /// The effect of the first interruption.
 #[derive(Clone, Copy)]
@@ -98,12 +102,18 @@ pub fn catch_with(then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
 }
 
 fn handle(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
-    ctrlc::set_handler(move || {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+    let mut first: Option<Instant> = None;
+    ctrlc::set_handler(move || match first {
+        Some(first) if first.elapsed() < TWICE => {}
+        Some(_) => {
             temporary::remove_all();
             process::exit(130);
         }
-        then();
+        None => {
+            first = Some(Instant::now());
+            INTERRUPTED.store(true, Ordering::Relaxed);
+            then();
+        }
     })
     .map_err(|error| Failure::Failed(format!("cannot catch interruptions: {error}")))
 }

@@ -38,6 +38,26 @@ fn a_picture_that_was_not_begun_is_not_written() {
     assert_eq!(names_in(folder.path()), ["a.png", "hall.ray"]);
 }
 
+/// The time after which a person may press Ctrl-C again.
+const AGAIN: Duration = Duration::from_millis(200);
+
+/// `timeout` sends a signal to the program, and then to its process group.
+#[test]
+fn two_signals_at_once_are_one_interruption() {
+    let folder = workplace();
+    let mut running =
+        Running::render(&folder, &["hall.ray", "--size", "2000", "--samples", "16", "-o", "a.png"]);
+    running.until_it_has_computed(Duration::from_secs(2));
+    running.send(Signal::SIGTERM);
+    thread::sleep(Duration::from_millis(5));
+    running.send(Signal::SIGTERM);
+    let (status, err) = running.end();
+    assert!(
+        status == 130 && err.contains("\nwrote ") && err.contains("from which `--resume`"),
+        "{status} {err}"
+    );
+}
+
 #[test]
 fn a_second_interruption_ends_at_once() {
     let folder = workplace();
@@ -48,7 +68,8 @@ fn a_second_interruption_ends_at_once() {
         running.send(Signal::SIGINT);
         thread::sleep(Duration::from_millis(10));
     }
-    assert_eq!(running.end(), (130, String::new()));
+    let (status, err) = running.end();
+    assert!(status == 130 && !err.contains("wrote"), "{status} {err}");
     assert_eq!(bytes(&folder, "a.png"), b"precious");
     assert_eq!(names_in(folder.path()), ["a.png", "hall.ray"]);
 }
@@ -64,6 +85,7 @@ fn a_second_interruption_ends_the_writing_too() {
     let mut line = String::new();
     err.read_line(&mut line).expect("a line");
     assert_eq!(line, "interrupted; press Ctrl-C again to quit at once\n");
+    thread::sleep(AGAIN);
     running.send(Signal::SIGINT);
     let mut rest = String::new();
     err.read_to_string(&mut rest).expect("text");
@@ -76,6 +98,7 @@ fn a_second_interruption_ends_the_writing_too() {
     running.send(Signal::SIGINT);
     let mut err = BufReader::new(running.0.stderr.take().expect("it is piped"));
     err.read_line(&mut line).expect("a line");
+    thread::sleep(AGAIN);
     running.send(Signal::SIGINT);
     assert_eq!(running.0.wait().expect("it ends").code(), Some(130));
     assert_eq!(bytes(&folder, "a.png"), b"precious");
