@@ -271,6 +271,7 @@ fn what_beginners_write_is_told_with_the_cure() {
             "radius 2 roughness 0.2",
             "`metal` and `plastic` have it: write it there; a sphere takes",
         ),
+        ("radius 2", "radius 2 texture wood", "have it: `shader` takes the name of one; a sphere takes"),
         (
             "material blue { ambient 0.5 0.5 1",
             "metal blue { colour 1 1 1 diffuse 1 1 1",

@@ -181,18 +181,24 @@ impl AttributeChecker<'_, '_> {
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
         let takes = format!("{} takes {names}", text::with_article(entity.name));
-        // One material stands where another does, and an object has one.
+        // One material stands where another does, and an object has one, and may have a shader.
         let is_material = entity.kind() == Kind::Material;
-        let has = |other: &&Entity| {
-            near.is_none()
-                && (is_material || entity.refers_to(Kind::Material))
-                && other.kind() == Kind::Material
-                && other.attributes().any(|attribute| attribute.name() == word.text)
+        let of_kind = |kind: Kind, is_there: bool| {
+            let has = move |other: &&Entity| {
+                other.kind() == kind && other.attributes().any(|attribute| attribute.name() == word.text)
+            };
+            let others = self.registry.iter().filter(|_| is_there && near.is_none()).filter(has);
+            others.map(|other| format!("`{}`", other.name)).take(MAX_OTHERS).collect::<Vec<_>>()
         };
-        let others = self.registry.iter().filter(has).map(|other| format!("`{}`", other.name));
-        let others: Vec<_> = others.take(MAX_OTHERS).collect();
+        let materials = of_kind(Kind::Material, is_material || entity.refers_to(Kind::Material));
+        let shaders = of_kind(Kind::Shader, materials.is_empty() && entity.refers_to(Kind::Shader));
+        let there = match (is_material, materials.is_empty()) {
+            (true, _) => "",
+            (false, false) => ": write it there",
+            (false, true) => ": `shader` takes the name of one",
+        };
+        let others = [materials, shaders].concat();
         let words: Vec<_> = others.iter().map(String::as_str).collect();
-        let there = if is_material { "" } else { ": write it there" };
         self.report.add(fault.help(match words[..] {
             [] => takes,
             [other] => format!("{other} has it{there}; {takes}"),
