@@ -158,11 +158,18 @@ impl<N: Scalar> Scalar for Dual<N> {
     }
 
     fn pow(self, exponent: Self) -> Self {
+        if let Some(exponent) = exponent.whole() {
+            return self.powi(exponent);
+        }
         let value = self.value.pow(exponent.value);
         let by_base = exponent.value * self.value.pow(exponent.value - N::constant(1.0));
         // The exponent is nearly always a constant, and then the base may be 0 or negative.
         let by_exponent = if exponent.slope.is_zero() { N::constant(0.0) } else { value * self.value.ln() };
         Self { value, slope: by_base * self.slope + by_exponent * exponent.slope }
+    }
+
+    fn whole(self) -> Option<i32> {
+        self.value.whole().filter(|_| self.slope.is_zero())
     }
 
     #[inline(always)]

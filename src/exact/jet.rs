@@ -194,6 +194,9 @@ impl<N: Scalar> Scalar for Jet<N> {
     }
 
     fn pow(self, exponent: Self) -> Self {
+        if let Some(exponent) = exponent.whole() {
+            return self.powi(exponent);
+        }
         let (base, power) = (self.dual(), exponent.dual());
         let value = base.pow(power);
         let by_base = power * base.pow(power - Dual::constant(1.0));
@@ -201,6 +204,10 @@ impl<N: Scalar> Scalar for Jet<N> {
         let is_constant = exponent.slope().is_zero();
         let by_exponent = if is_constant { Dual::constant(0.0) } else { value * base.ln() };
         Self::of(value.value, by_base * self.slope() + by_exponent * exponent.slope())
+    }
+
+    fn whole(self) -> Option<i32> {
+        self.value.whole().filter(|_| self.slope().is_zero())
     }
 
     #[inline(always)]

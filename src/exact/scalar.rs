@@ -93,6 +93,12 @@ pub trait Scalar:
     /// Returns the number raised to an integer power.
     fn powi(self, exponent: i32) -> Self;
 
+    /// Returns the integer that this certainly is, where a power with it as the exponent may be that with an integer: for
+    /// numbers that enclose others. It is `None` for plain numbers, whose powers differ in their last bits.
+    fn whole(self) -> Option<i32> {
+        None
+    }
+
     /// Returns the number times a constant.
     #[inline(always)]
     fn scaled(self, factor: f64) -> Self {

@@ -166,6 +166,9 @@ impl Scalar for Affine {
     }
 
     fn pow(self, exponent: Self) -> Self {
+        if let Some(exponent) = exponent.whole() {
+            return self.powi(exponent);
+        }
         let range = self.range();
         if !(exponent.is_thin() && range.low > 0.0) {
             return range.pow(exponent.range()).into();
@@ -175,6 +178,10 @@ impl Scalar for Affine {
         let slope = power * at.pow(power - one);
         let bend = power * (power - one) * range.pow(power - one - one);
         self.chain(at.pow(power), slope, bend).or(range.pow(power))
+    }
+
+    fn whole(self) -> Option<i32> {
+        self.range().whole()
     }
 
     fn powi(self, exponent: i32) -> Self {

@@ -4,7 +4,16 @@ use super::{Float, Interval};
 use crate::scalar::{Scalar, apart_if, of_cubic};
 use crate::spline::{Coefficient, Spline};
 
+/// The largest exponent that counts as an integer, as in formulas.
+const MAX_WHOLE: f64 = 1000.0;
+
 impl<F: Float> Interval<F> {
+    /// Tells whether no number of the interval is an integer.
+    fn has_no_integer(self) -> bool {
+        let Interval { low, high } = self.coarse();
+        low.floor() < low && high < low.floor() + 1.0
+    }
+
     /// Returns whether the interval may contain `start` plus any multiple of 2π radians.
     fn holds_angle(self, start: F) -> bool {
         // The errors, in EPSILON of the angles, are half each for two roundings in the difference, and for one each in
@@ -239,10 +248,15 @@ impl<F: Float> Scalar for Interval<F> {
 
     fn pow(self, exponent: Self) -> Self {
         let zero = F::of(0.0);
-        if self.is_zero() && exponent.low > zero {
+        if let Some(exponent) = exponent.whole() {
+            self.powi(exponent)
+        } else if self.is_zero() && exponent.low > zero {
             Self::constant(0.0)
         } else if self.low >= zero {
             (exponent * self.ln()).exp()
+        } else if self.high >= zero && exponent.has_no_integer() {
+            // Of negative numbers there is no such power, as there is no root.
+            Self { low: zero, ..self }.pow(exponent)
         } else {
             Self::whole()
         }
@@ -251,6 +265,12 @@ impl<F: Float> Scalar for Interval<F> {
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
         if exponent == 2 { apart_if!(F::IS_LONG, self.square()) } else { self.power(exponent) }
+    }
+
+    fn whole(self) -> Option<i32> {
+        let number = self.coarse();
+        let is_whole = self.low == self.high && number.low.fract() == 0.0 && number.low == number.high;
+        (is_whole && number.low.abs() <= MAX_WHOLE).then_some(number.low as i32)
     }
 
     /// Encloses the values of each overlapping piece of the spline, over its intersection with the interval.
@@ -306,5 +326,32 @@ impl<F: Float> Scalar for Interval<F> {
     #[inline(always)]
     fn is_zero(self) -> bool {
         self.low == F::of(0.0) && self.high == F::of(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dual::Dual;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(crate::properties())]
+
+        /// With a constant exponent, bounds hold all powers that are defined, of negative numbers too, and their slopes.
+        #[test]
+        fn powers_with_a_constant_exponent_are_enclosed(low in -3.0..3.0, width in 0.0..2.0, part in 0.0..1.0, quarters in 4..24_u32) {
+            let (exponent, x) = (f64::from(quarters) / 4.0, low + part * width);
+            let base: Dual<Interval> = Dual { value: Interval { low, high: low + width }, slope: Interval::constant(1.0) };
+            let Dual { value, slope } = base.pow(Dual::constant(exponent));
+            let power = libm::pow(x, exponent);
+            if power.is_nan() {
+                return Ok(());
+            }
+            let near = |of: Interval, number: f64| of.low - 1e-9 <= number && number <= of.high + 1e-9;
+            prop_assert!(value.low.is_finite() && value.high.is_finite() && near(value, power), "{value:?} {power}");
+            let steep = exponent * libm::pow(x, exponent - 1.0);
+            prop_assert!(slope.low.is_finite() && slope.high.is_finite() && near(slope, steep), "{slope:?} {steep}");
+        }
     }
 }
