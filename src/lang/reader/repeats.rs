@@ -41,6 +41,8 @@ struct Round {
     place: Place,
     index: u64,
     count: u64,
+    /// Whether a number in the text says how many rounds there are.
+    is_number: bool,
     /// The number of names outside of the `repeat`.
     names: usize,
     /// The position of the body in the text, in bytes.
@@ -118,7 +120,7 @@ impl<'a> Repeats<'a> {
     pub fn begin(
         &mut self,
         name: &Word<'_>,
-        count: &Word<'_>,
+        count_word: &Word<'_>,
         (start, entities): (usize, HashSet<String>),
         errors: usize,
         report: &mut Report<'_>,
@@ -130,20 +132,38 @@ impl<'a> Repeats<'a> {
             let help = format!("a `repeat` can be nested at most {MAX_DEPTH} deep");
             report.add(Fault::error(name.place.clone(), message).help(help));
         }
-        let number = self.numbers.number(count, report);
+        let number = self.numbers.number(count_word, report);
         let rounds = number.map_or(0.0, |number| number);
         if rounds < 0.0 || rounds.fract() != 0.0 || rounds > MAX_ROUNDS as f64 {
             let message =
                 format!("`repeat {}` cannot have {} rounds", name.text, tabray_core::text::shortest(rounds));
             let help = format!("the number of rounds is a whole number from 0 to {MAX_ROUNDS}");
-            report.add(Fault::error(count.place.clone(), message).help(help));
+            report.add(Fault::error(count_word.place.clone(), message).help(help));
         }
         self.numbers.define(name, Some(0.0), report);
         let count =
             if number.is_some() && rounds >= 0.0 && rounds <= MAX_ROUNDS as f64 { rounds as u64 } else { 1 };
-        let place = name.place.clone();
-        self.open.push(Round { place, index: 0, count, names, start, errors, entities });
-        count > 0 && !is_too_deep
+        let (place, is_number) = (name.place.clone(), count_word.text.parse::<f64>().is_ok());
+        self.open.push(Round { place, index: 0, count, is_number, names, start, errors, entities });
+        let is_too_much = self.is_too_much();
+        if is_too_much {
+            self.report_too_much(report);
+        }
+        count > 0 && !is_too_deep && !is_too_much
+    }
+
+    /// Tells whether the `repeat`s in progress will certainly have too many rounds, as numbers say how many each has.
+    fn is_too_much(&self) -> bool {
+        let rounds = self.open.iter().map(|round| round.count).fold(1, u64::saturating_mul);
+        rounds > MAX_ROUNDS as u64 && self.open.iter().all(|round| round.is_number)
+    }
+
+    fn report_too_much(&self, report: &mut Report<'_>) {
+        let help = format!(
+            "a scene has at most {MAX_ROUNDS} rounds and repeated entities, and at most {} MiB of repeated text",
+            MAX_BYTES >> 20
+        );
+        report.add(Fault::error(self.innermost(), "the scene repeats too much").help(help));
     }
 
     /// Ends a round whose body ends at `end`. Returns the position of the body for another round, or `None` after the
@@ -180,12 +200,7 @@ impl<'a> Repeats<'a> {
         self.count += 1;
         let is_there = self.count <= MAX_ROUNDS && self.bytes <= MAX_BYTES;
         if !is_there {
-            let place = self.innermost();
-            let help = format!(
-                "a scene has at most {MAX_ROUNDS} rounds and repeated entities, and at most {} MiB of repeated text",
-                MAX_BYTES >> 20
-            );
-            report.add(Fault::error(place, "the scene repeats too much").help(help));
+            self.report_too_much(report);
         }
         is_there
     }
