@@ -127,6 +127,18 @@ fn what_is_wrong_with_a_function_is_marked_there() {
 }
 
 #[test]
+fn formulas_of_forty_thousand_terms_are_read_quickly() {
+    let start = Instant::now();
+    for (operation, term) in [("+", "sin(#*x)"), ("*", "(x-#*y)")] {
+        let terms: Vec<_> = (1..40_000).map(|number| term.replace('#', &number.to_string())).collect();
+        let formula = terms.join(operation);
+        let text = format!("{HEAD}implicit s {{ material m box -1 -1 -1 1 1 1 formula \"{formula}\" }}\n");
+        assert_eq!(model(&text).objects.len(), 1);
+    }
+    assert!(start.elapsed() < HANGS, "{:?}", start.elapsed());
+}
+
+#[test]
 fn a_hundred_thousand_rounds_are_read_quickly_and_many_more_are_refused() {
     let start = Instant::now();
     let text = format!(

@@ -69,36 +69,43 @@ struct Factors<'s> {
 impl<'s> Factors<'s> {
     /// Adds the factors of a power of a product. Returns the sign of the constant factors.
     fn add(&mut self, of: &'s [Step], power: u32) -> f64 {
-        let Some((last, operands)) = of.split_last() else { return 1.0 };
-        if !has_variable(of) {
-            let value = value_of(of);
-            // A constant factor of 0 counts like any other factor.
-            if value != 0.0 && value.is_finite() {
-                return if value < 0.0 && !power.is_multiple_of(2) { -1.0 } else { 1.0 };
+        // A list of what is yet to be added, as products may have more factors than a stack has room for.
+        let (mut waiting, mut sign) = (vec![(of, power)], 1.0);
+        while let Some((of, power)) = waiting.pop() {
+            let Some((last, operands)) = of.split_last() else { continue };
+            let odd = if power.is_multiple_of(2) { 1.0 } else { -1.0 };
+            if !has_variable(of) {
+                let value = value_of(of);
+                // A constant factor of 0 counts like any other factor.
+                if value != 0.0 && value.is_finite() {
+                    sign *= if value < 0.0 { odd } else { 1.0 };
+                    continue;
+                }
+            }
+            let (left, right) = operands.split_at(start_of_last(operands));
+            match last {
+                Step::Mul => waiting.extend([(right, power), (left, power)]),
+                Step::Div if !has_variable(right) => waiting.extend([(right, power), (left, power)]),
+                Step::Neg => {
+                    sign *= odd;
+                    waiting.push((operands, power));
+                }
+                Step::Powi(exponent) if *exponent > 0 => {
+                    waiting.push((operands, power.saturating_mul(exponent.unsigned_abs())));
+                }
+                _ => self.add_one(of, power),
             }
         }
-        match last {
-            Step::Mul => {
-                let (left, right) = operands.split_at(start_of_last(operands));
-                self.add(left, power) * self.add(right, power)
-            }
-            Step::Div if !has_variable(&operands[start_of_last(operands)..]) => {
-                let (left, right) = operands.split_at(start_of_last(operands));
-                self.add(left, power) * self.add(right, power)
-            }
-            Step::Neg => self.add(operands, power) * if power.is_multiple_of(2) { 1.0 } else { -1.0 },
-            Step::Powi(exponent) if *exponent > 0 => {
-                self.add(operands, power.saturating_mul(exponent.unsigned_abs()))
-            }
-            _ => {
-                let new = self.powers.len();
-                let place = *self.places.entry(of.iter().map(|step| step.key()).collect()).or_insert(new);
-                match self.powers.get_mut(place) {
-                    Some((_, known)) => *known = known.saturating_add(power),
-                    None => self.powers.push((of, power)),
-                }
-                1.0
-            }
+        sign
+    }
+
+    /// Adds a power of a factor that is no product.
+    fn add_one(&mut self, factor: &'s [Step], power: u32) {
+        let new = self.powers.len();
+        let place = *self.places.entry(factor.iter().map(|step| step.key()).collect()).or_insert(new);
+        match self.powers.get_mut(place) {
+            Some((_, known)) => *known = known.saturating_add(power),
+            None => self.powers.push((factor, power)),
         }
     }
 }
