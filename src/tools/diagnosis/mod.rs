@@ -147,14 +147,22 @@ fn unlit(model: &Model, places: &[[usize; 2]], levels: &Levels) -> Option<Remark
     })
 }
 
-/// Returns the remark on a model's image, from a few of its pixels; none where these take too long.
+/// Returns the remark on a model's image, from a few of its pixels, or on the time that these take.
 pub fn tried(model: Arc<Model>) -> Option<Remark> {
     // The deepest reflections need more of a stack than the program's own thread has.
     let renderer = renderer_with(1).ok()?;
     let (sender, remark) = mpsc::channel();
     // A single pixel of a very long formula may take minutes. It is not waited for, and ends with the program.
-    thread::spawn(move || sender.send(renderer.run(|| tried_here(&model))));
-    remark.recv_timeout(LAST).ok().flatten()
+    thread::Builder::new().spawn(move || sender.send(renderer.run(|| tried_here(&model)))).ok()?;
+    remark.recv_timeout(LAST).unwrap_or_else(|_| Some(slow()))
+}
+
+/// Remarks that an image takes too long to be tried.
+fn slow() -> Remark {
+    Remark {
+        message: "the image takes long, and could not be tried: it may be black or empty".to_owned(),
+        help: "`tabray render --size 64` shows it sooner, and `--time-limit 1m` ends in time".to_owned(),
+    }
 }
 
 fn tried_here(model: &Model) -> Option<Remark> {
@@ -182,12 +190,13 @@ fn tried_here(model: &Model) -> Option<Remark> {
         Some(levels)
     };
     plan.max_depth = MAX_DEPTH;
-    let mut found = levels(&plan, &places)?;
+    let Some(mut found) = levels(&plan, &places) else { return Some(slow()) };
     plan.max_depth = usize::MAX;
     if found.brightest < DARK && plan.depth.is_some() {
         let step = places.len().div_ceil(MAX_DEEP).max(1);
         let few: Vec<_> = places.iter().skip(step / 2).step_by(step).copied().collect();
-        found = levels(&plan, &few)?;
+        let Some(deep) = levels(&plan, &few) else { return Some(slow()) };
+        found = deep;
     }
     remark_on("the image seems to be", &plan, part, &found)
 }
