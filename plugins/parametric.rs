@@ -2,15 +2,10 @@
 
 use tabray::prelude::*;
 
-static X: Pparm<PatchField> = Pparm::required("x", "the x of the point of u and v")
-    .unit("world units")
-    .must("of at most 10000 operations", PatchField::is_short);
-static Y: Pparm<PatchField> = Pparm::required("y", "its y")
-    .unit("world units")
-    .must("of at most 10000 operations", PatchField::is_short);
-static Z: Pparm<PatchField> = Pparm::required("z", "its z")
-    .unit("world units")
-    .must("of at most 10000 operations", PatchField::is_short);
+static X: Pparm<PatchField> =
+    Pparm::required("x", "the x of the point of u and v").unit("world units").short();
+static Y: Pparm<PatchField> = Pparm::required("y", "its y").unit("world units").short();
+static Z: Pparm<PatchField> = Pparm::required("z", "its z").unit("world units").short();
 static U: Pparm<[f64; 2]> =
     Pparm::required("u", "the least and the greatest u").must("rising by at most a million", rises);
 static V: Pparm<[f64; 2]> =

@@ -3,15 +3,10 @@
 use std::f64::consts::TAU;
 use tabray::prelude::*;
 
-static X: Pparm<CurveField> = Pparm::required("x", "the x of the curve's point of t")
-    .unit("world units")
-    .must("of at most 10000 operations", CurveField::is_short);
-static Y: Pparm<CurveField> = Pparm::required("y", "its y")
-    .unit("world units")
-    .must("of at most 10000 operations", CurveField::is_short);
-static Z: Pparm<CurveField> = Pparm::required("z", "its z")
-    .unit("world units")
-    .must("of at most 10000 operations", CurveField::is_short);
+static X: Pparm<CurveField> =
+    Pparm::required("x", "the x of the curve's point of t").unit("world units").short();
+static Y: Pparm<CurveField> = Pparm::required("y", "its y").unit("world units").short();
+static Z: Pparm<CurveField> = Pparm::required("z", "its z").unit("world units").short();
 static T: Pparm<[f64; 2]> =
     Pparm::required("t", "the least and the greatest t").must("rising", |[low, high]: &[f64; 2]| low < high);
 static RADIUS: Pparm<f64> =

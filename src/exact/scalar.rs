@@ -93,8 +93,8 @@ pub trait Scalar:
     /// Returns the number raised to an integer power.
     fn powi(self, exponent: i32) -> Self;
 
-    /// Returns the integer that this certainly is, where a power with it as the exponent may be that with an integer: for
-    /// numbers that enclose others. It is `None` for plain numbers, whose powers differ in their last bits.
+    /// Returns the integer that this number certainly is. Of numbers that enclose others, a power with such an exponent is a
+    /// product. `None` of plain numbers, so that each power keeps its last bits.
     fn whole(self) -> Option<i32> {
         None
     }

@@ -444,13 +444,13 @@ fn choosing_ends_in_time_on_a_mesh_of_2048_triangles() {
 #[test]
 fn choosing_answers_where_1600_balls_mirror_each_other() {
     let folder = TempDir::new().expect("a folder");
-    let scene = "look_at eye { pixeldim 120 90 position 0 12 30 target 0 0 0 angle 45 }
+    let scene = "look_at eye { pixeldim 320 240 position 0 12 30 target 0 0 0 angle 45 }
         material m { diffuse 0.7 0.6 0.5 specular 0.1 shininess 40 } plane floor { material m normal 0 1 0 point 0 -0.5 0 }
         repeat i 40 { repeat j 40 { sphere s { material m center \"i-19.5\" 0 \"j-19.5\" radius 0.4 } } }
         light lamp { location 3 15 6 emissivity 0.9 0.9 0.9 }";
     std::fs::write(folder.path().join("balls.ray"), scene).expect("a file");
     let mut choose = cargo_bin_cmd!("tabray");
-    let args = ["choose", "balls.ray", "--max-error", "3", "--time-limit", "10m"];
+    let args = ["choose", "balls.ray", "--max-error", "3", "--time-limit", "2m"];
     let output = choose.current_dir(folder.path()).args(args).output().expect("it runs");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
@@ -471,8 +471,9 @@ fn a_chart_ends_near_its_time_limit_and_shows_what_it_has() {
     if output.status.success() {
         // Which panel is complete first depends on the machine; each has its methods and its fastest ones.
         assert!(text.contains("Pareto front: "), "{text}");
-        assert!(text.contains("Not everything was measured: these are the results by then."), "{text}");
-        assert!(said.contains("there was not enough time for all of the chart"), "{said}");
+        // A fast machine has a complete chart, though a coarse one.
+        let is_short = said.contains("there was not enough time for all of the chart");
+        assert_eq!(text.contains("Not everything was measured"), is_short, "{text}{said}");
     } else {
         // On a machine with much other work.
         assert!(said.contains("nothing is measured yet"), "{said}");

@@ -31,9 +31,6 @@ pub type PatchField = FieldOf<{ PATCH.len() }>;
 /// A formula in t.
 pub type CurveField = FieldOf<{ CURVE.len() }>;
 
-/// The largest number of operations of a formula that [`is_short`](FieldOf::is_short).
-const SHORT: u64 = 10_000;
-
 /// A formula in the variables of [`SPACE`], [`PATCH`], [`CURVE`] or [`SURFACE`], depending on their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldOf<const N: usize> {
@@ -148,7 +145,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Tells whether an evaluation takes at most ten thousand operations, as [`Formula::cost`] counts them. A shape that is
     /// evaluated in thousands of places is then made within seconds.
     pub fn is_short(&self) -> bool {
-        self.formula.cost() <= SHORT
+        self.formula.cost() <= 10_000
     }
 
     /// Returns the formula.

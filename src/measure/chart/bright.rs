@@ -38,6 +38,8 @@ impl Cell {
 pub(super) struct Bounds<'b> {
     pub bounds: Brightness<'b>,
     pub camera: &'b Sensor,
+    /// A bound on the brightness of the whole image.
+    pub most: f64,
     /// The brightness up to which nothing counts as small.
     pub bright: f64,
     /// The brightness that stands for an unbounded one.
@@ -79,8 +81,7 @@ impl Bounds<'_> {
 
     /// Adds all pixels of a square of the image, without looking at them.
     pub fn all(&self, [x, y]: [usize; 2], side: usize, pixels: &mut Vec<([usize; 2], Cell)>) {
-        let [width, height] = self.camera.pixels;
-        let most = self.known(self.bounds.most(self.camera));
+        let ([width, height], most) = (self.camera.pixels, self.known(self.most));
         for (x, y) in (y..height.min(y + side)).flat_map(|y| (x..width.min(x + side)).map(move |x| (x, y))) {
             pixels.push(([x, y], Cell { middle: DVec2::new(x as f64, y as f64), half: 0.5, most }));
         }

@@ -120,10 +120,11 @@ impl SmallThings {
         let matters = (width * height) as f64 * error * error;
         let bright = f64::from(samples) * if matters < 1.0 { matters.sqrt() } else { matters } / SURE;
         let bright = bright.clamp(BRIGHT[0], BRIGHT[1]);
-        if bounds.most(camera) <= bright {
+        let most = bounds.most(camera);
+        if most <= bright {
             return Ok(found);
         }
-        let bounds = Bounds { bounds, camera, bright, unbounded: unbounded(plan) };
+        let bounds = Bounds { bounds, camera, most, bright, unbounded: unbounded(plan) };
         let sides = camera.pixels.map(|side| side.div_ceil(SQUARE));
         let drawing = Drawing::new(sides);
         let squares: Vec<_> =

@@ -11,6 +11,7 @@ use glam::DVec3;
 use std::borrow::Cow;
 use std::panic::Location;
 use std::ptr;
+use tabray_exact::formula::field::FieldOf;
 
 /// A row of an entity's table.
 pub trait Row: Sync {
@@ -146,6 +147,17 @@ impl Pparm<f64> {
     /// Sets the rule that the number is positive.
     pub const fn positive(self) -> Self {
         self.must("positive", |number| *number > 0.0)
+    }
+}
+
+impl<const VARIABLES: usize> Pparm<FieldOf<VARIABLES>>
+where
+    FieldOf<VARIABLES>: Value,
+{
+    /// Sets the rule that the formula is short enough to be evaluated in thousands of places when a shape is made: see
+    /// [`FieldOf::is_short`].
+    pub const fn short(self) -> Self {
+        self.must("of at most 10000 operations", FieldOf::is_short)
     }
 }
 
