@@ -248,7 +248,8 @@ fn a_formula_of_a_hundred_thousand_factors_is_read() {
     let mut check = tabray(&folder);
     let (status, _, said) =
         outcome(check.args(["check", "-"]).write_stdin(scene).timeout(Duration::from_secs(60)));
-    assert_eq!((status, said.as_str()), (0, "-: no errors\n"));
+    // On a slow machine its pixels take too long to be tried, and a warning says so.
+    assert!(status == 0 && said.ends_with("-: no errors\n"), "{status}: {said}");
 }
 
 #[test]
