@@ -48,7 +48,15 @@ impl Image {
         (at.clamp(0.0, (self.size()[axis] - 1.0).max(0.0)) as u64 % size) as u32
     }
 
+    /// Returns the opacity at a point.
+    fn alpha(&self, at: &SurfacePoint) -> f64 {
+        self.blend(self.place(at), |column, row| DVec3::splat(self.texture.alpha(column, row))).x
+    }
+
     fn colour(&self, at: &SurfacePoint) -> Rgb {
+        if self.texture.covers_in_part() {
+            return self.colour_by_alpha(at);
+        }
         if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {
             let size = self.size();
             let (low, high) = (low * size, high * size);
@@ -57,6 +65,16 @@ impl Image {
             }
         }
         self.blend(self.place(at), |column, row| self.texture.texel(column, row))
+    }
+
+    /// Returns the colour of a point, not a mean over a patch: texels count as much as they cover.
+    fn colour_by_alpha(&self, at: &SurfacePoint) -> Rgb {
+        let (place, covered) = (self.place(at), self.alpha(at));
+        let texel = |column, row| self.texture.texel(column, row);
+        if covered == 0.0 {
+            return self.blend(place, texel);
+        }
+        self.blend(place, |column, row| self.texture.alpha(column, row) * texel(column, row)) / covered
     }
 
     /// Returns what `of` returns for the texel at a place or, if colours are interpolated, a blend of four texels.
@@ -124,7 +142,15 @@ impl Shader for Image {
     }
 
     fn is_cut_out(&self, at: &SurfacePoint) -> bool {
-        self.blend(self.place(at), |column, row| DVec3::splat(self.texture.alpha(column, row))).x < CUTOFF
+        self.texture.is_hole(self.alpha(at))
+    }
+
+    fn covers_in_part(&self) -> bool {
+        self.texture.covers_in_part()
+    }
+
+    fn coverage(&self, at: &SurfacePoint) -> f64 {
+        self.alpha(at)
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {

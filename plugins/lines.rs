@@ -137,6 +137,15 @@ impl Shader for Lines {
         self.blend(self.base.specular(material, at), self.line.specular, at)
     }
 
+    fn covers_in_part(&self) -> bool {
+        self.base.covers_in_part()
+    }
+
+    fn coverage(&self, at: &SurfacePoint) -> f64 {
+        let covered = self.base.coverage(at);
+        covered + self.part(at) * (1.0 - covered)
+    }
+
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         let is_line = self.part(&SurfacePoint { patch: None, ..*at });
         2.0 * self.base.tile(at) + DVec2::new(is_line, 0.0)

@@ -82,6 +82,12 @@ impl Picture {
         self.texture.texel(column, row)
     }
 
+    /// Returns the opacity of the texel at a point of the rectangle.
+    fn alpha(&self, at: DVec3) -> f64 {
+        let [column, row] = self.texel(at);
+        self.texture.alpha(column, row)
+    }
+
     /// Returns the column and the row of the texel at a point of the rectangle.
     #[inline]
     pub fn texel(&self, at: DVec3) -> [u32; 2] {
@@ -134,8 +140,15 @@ impl Shader for Textured {
     }
 
     fn is_cut_out(&self, at: &SurfacePoint) -> bool {
-        let [column, row] = self.0.texel(at.position);
-        self.0.texture.alpha(column, row) < CUTOFF
+        self.0.texture.is_hole(self.0.alpha(at.position))
+    }
+
+    fn covers_in_part(&self) -> bool {
+        self.0.texture.covers_in_part()
+    }
+
+    fn coverage(&self, at: &SurfacePoint) -> f64 {
+        self.0.alpha(at.position)
     }
 
     #[inline]

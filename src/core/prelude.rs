@@ -35,7 +35,7 @@ pub use tabray_world::sensor::AnyCamera;
 pub use tabray_world::shader::{Anchor, EnclosedShader, LookBounds, Shader, enclosed};
 pub use tabray_world::surface_formula;
 pub use tabray_world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
-pub use tabray_world::texture::{CUTOFF, Texture};
+pub use tabray_world::texture::{Alpha, Texture};
 
 // What a scene selects by name: shaders, profiles and other alternatives.
 pub use tabray_exact::formula::Formula;

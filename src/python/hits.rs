@@ -91,6 +91,8 @@ pub struct Hits {
     normal: Py<PyAny>,
     /// The coordinates u and v there, where the shape has some, rounded. (n, 2).
     uv: Py<PyAny>,
+    /// The fraction of what is behind the hit that it covers: 1 for a miss and an opaque surface.
+    coverage: Py<PyAny>,
     /// The surface of the object, for `leaves`. int32.
     surface: Py<PyAny>,
 }
@@ -279,6 +281,7 @@ impl Hits {
             point: of("point")?,
             normal: of("normal")?,
             uv: of("uv")?,
+            coverage: of("coverage")?,
             surface: of("surface")?,
         })
     }
@@ -297,6 +300,7 @@ impl Hits {
             "point" => &self.point,
             "normal" => &self.normal,
             "uv" => &self.uv,
+            "coverage" => &self.coverage,
             "surface" => &self.surface,
             _ => unreachable!("each column is an array of answers"),
         };

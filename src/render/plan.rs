@@ -139,7 +139,7 @@ impl<'m> Plan<'m> {
         let prover = camera.certain.then(|| PixelProver::new(model));
         let mut unreached = needs.unreached.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unreached.next_if_eq(&index).is_none());
-        let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
+        let has_glass = met.any(|(_, object)| !object.is_opaque());
         let has_media = objects.iter().any(|object| object.material.medium().is_some());
         let costly = depth.as_ref().and_then(|_| CostlyObjects::of(objects));
         let (max_depth, lamps) = (usize::MAX, lamps::of(model, &needs.lights));

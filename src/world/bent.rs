@@ -57,6 +57,14 @@ impl<B: Bend> Shader for Bent<B> {
         self.colours.is_cut_out(at)
     }
 
+    fn covers_in_part(&self) -> bool {
+        self.colours.covers_in_part()
+    }
+
+    fn coverage(&self, at: &SurfacePoint) -> f64 {
+        self.colours.coverage(at)
+    }
+
     fn enclose_bend<F: Precise>(
         &self,
         at: &PointBounds<F>,

@@ -172,6 +172,11 @@ fn srgb_byte(light: f64) -> u8 {
 }
 
 impl Display {
+    /// Returns the rules of light by which the image is computed.
+    pub fn rules(&self) -> Rules {
+        self.rules
+    }
+
     /// Describes how light is shown by these rules, with an exposure in stops. The notes' rules know neither tone nor
     /// transfer.
     pub fn new(rules: Rules, exposure: f64, tone: Tone, transfer: Transfer) -> Self {

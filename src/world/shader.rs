@@ -98,6 +98,30 @@ pub trait Shader: Send + Sync {
         false
     }
 
+    /// Tells whether the surface covers only a part of what is behind it anywhere, by the free rules of light. It is
+    /// the same in every call.
+    #[inline(always)]
+    fn covers_in_part(&self) -> bool {
+        false
+    }
+
+    /// Returns the fraction of what is behind a point that it covers, from 0 to 1, if the shader [covers in
+    /// part](Self::covers_in_part). The rest is seen through it unbent, and shadows are as light.
+    #[inline]
+    fn coverage(&self, _at: &SurfacePoint) -> f64 {
+        1.0
+    }
+
+    /// Encloses the [`coverage`](Self::coverage) of every point of a box, before any rounding. The default is always
+    /// correct.
+    fn enclose_coverage<F: Precise>(&self, _at: &PointBounds<F>) -> Interval<F>
+    where
+        Self: Sized,
+    {
+        let least = if self.covers_in_part() { 0.0 } else { 1.0 };
+        Interval::constant(least).hull(Interval::constant(1.0))
+    }
+
     /// Encloses the unit normals that the shader makes of these outward ones, which the shader of
     /// [`colours`](Self::colours) has already bent, before any rounding, at every point of a box; `None` where the
     /// bent normals are not known. `None` is always correct.
@@ -214,6 +238,9 @@ pub trait EncloseLook<F> {
     /// Calls [`Shader::enclose`].
     fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>>;
 
+    /// Calls [`Shader::enclose_coverage`].
+    fn coverage_bounds(&self, at: &PointBounds<F>) -> Interval<F>;
+
     /// Calls [`Shader::enclose_bend`].
     fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
 }
@@ -221,6 +248,10 @@ pub trait EncloseLook<F> {
 impl<T: Shader, F: Precise> EncloseLook<F> for T {
     fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
         self.enclose(material, at)
+    }
+
+    fn coverage_bounds(&self, at: &PointBounds<F>) -> Interval<F> {
+        self.enclose_coverage(at)
     }
 
     fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
@@ -234,7 +265,20 @@ pub fn enclosed<F: Precise>(
     material: &Material,
     at: &PointBounds<F>,
 ) -> Option<LookBounds<F>> {
-    let own = PointBounds {
+    let look = EncloseLook::<Fraction>::look(shader, material, &widened(at))?;
+    let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
+    let LookBounds { ambient, diffuse, specular } = look;
+    Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
+}
+
+/// Encloses the coverage of a shader of any type, as [`Shader::enclose_coverage`] does.
+pub fn enclosed_coverage<F: Precise>(shader: &dyn EnclosedShader, at: &PointBounds<F>) -> Interval<F> {
+    F::narrow(EncloseLook::<Fraction>::coverage_bounds(shader, &widened(at)))
+}
+
+/// Returns the bounds of a point as fractions.
+fn widened<F: Precise>(at: &PointBounds<F>) -> PointBounds<Fraction> {
+    PointBounds {
         position: at.position.map(F::widen),
         normal: at.normal.map(|normal| normal.map(F::widen)),
         uv: at.uv,
@@ -245,11 +289,7 @@ pub fn enclosed<F: Precise>(
             uv,
         }),
         tangents: at.tangents.map(|tangents| tangents.map(|along| along.map(F::widen))),
-    };
-    let look = EncloseLook::<Fraction>::look(shader, material, &own)?;
-    let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
-    let LookBounds { ambient, diffuse, specular } = look;
-    Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
+    }
 }
 
 /// Points of a surface, as a shader sees them.

@@ -3,6 +3,7 @@
 use crate::display::Display;
 use crate::image_file;
 use crate::material::Rgb;
+use crate::rules::Rules;
 use crate::sensor::Sensor;
 use crate::sums::Sums;
 use crate::texels::Texels;
@@ -28,10 +29,22 @@ pub struct Texture {
     contents: Option<Vec<u8>>,
     /// Whether transparent texels show their colours as other texels do, and the opacity of each texel is kept.
     is_opaque: bool,
-    cuts_out: bool,
+    alpha: Alpha,
     /// The display of the rendered image; that of the notes' rules unless it is set.
     display: OnceLock<Display>,
     picture: OnceLock<Result<Picture, String>>,
+}
+
+/// What the alpha of a texture does to surfaces on which it is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Alpha {
+    /// Nothing: transparent texels show the object's own colour.
+    #[default]
+    Own,
+    /// It cuts them out where it is below [`CUTOFF`].
+    CutsOut,
+    /// It is the fraction of what is behind them that they cover.
+    Covers,
 }
 
 /// An image that was read.
@@ -43,10 +56,10 @@ struct Picture {
     remarks: Vec<&'static str>,
 }
 
-/// Textures are equal if their paths are, and both cut surfaces out or neither does.
+/// Textures are equal if their paths are, and their alpha does the same.
 impl PartialEq for Texture {
     fn eq(&self, other: &Self) -> bool {
-        self.path == other.path && self.cuts_out == other.cuts_out
+        self.path == other.path && self.alpha == other.alpha
     }
 }
 
@@ -62,14 +75,35 @@ impl Texture {
         Self { path, contents, is_opaque: true, ..Self::default() }
     }
 
-    /// Makes a texture of an image file that is [cut out](Self::cuts_out).
-    pub fn cutout(path: PathBuf) -> Self {
-        Self { path, is_opaque: true, cuts_out: true, ..Self::default() }
+    /// Makes a texture of an image file whose alpha does this.
+    pub fn with_alpha(path: PathBuf, alpha: Alpha) -> Self {
+        Self { path, is_opaque: alpha != Alpha::Own, alpha, ..Self::default() }
     }
 
-    /// Tells whether the texture cuts surfaces out where its [`alpha`](Self::alpha) is below [`CUTOFF`].
+    /// Returns what the [`alpha`](Self::alpha) does.
+    pub fn alpha_use(&self) -> Alpha {
+        self.alpha
+    }
+
+    /// Tells whether there are places where the texture cuts surfaces out.
     pub fn cuts_out(&self) -> bool {
-        self.cuts_out
+        self.alpha != Alpha::Own
+    }
+
+    /// Tells whether the texture cuts a surface out where its [`alpha`](Self::alpha) is this.
+    pub fn is_hole(&self, alpha: f64) -> bool {
+        match self.alpha {
+            Alpha::Own => false,
+            Alpha::Covers if self.covers_in_part() => alpha <= 0.0,
+            Alpha::CutsOut | Alpha::Covers => alpha < CUTOFF,
+        }
+    }
+
+    /// Tells whether the [`alpha`](Self::alpha) is the fraction of what is behind a surface that it covers: the notes'
+    /// rules of light know none but 0 and 1.
+    pub fn covers_in_part(&self) -> bool {
+        self.alpha == Alpha::Covers
+            && self.display.get().is_some_and(|display| display.rules() == Rules::Free)
     }
 
     /// Returns the path of the image file.
@@ -157,8 +191,8 @@ impl Texture {
         self.load().map_or(DVec3::new(0.5, 0.5, 1.0), |texels| texels.numbers(column, row))
     }
 
-    /// Returns the opacity of a texel, from 0 to 1, as [`texel`](Self::texel) does: 1 unless the texture is [cut
-    /// out](Self::cuts_out), or is one of a model.
+    /// Returns the opacity of a texel, from 0 to 1, as [`texel`](Self::texel) does: 1 unless the texture's
+    /// alpha does anything, or it is one of a model.
     pub fn alpha(&self, column: u32, row: u32) -> f64 {
         self.load().map_or(1.0, |texels| texels.alpha(column, row))
     }
@@ -197,7 +231,6 @@ impl Texture {
 mod tests {
     use super::*;
     use crate::display::{Tone, Transfer};
-    use crate::rules::Rules;
     use crate::text;
     use image::{DynamicImage, ImageEncoder, ImageFormat, Rgb as Texel, Rgb32FImage, RgbImage, RgbaImage};
     use tempfile::TempDir;
@@ -320,7 +353,7 @@ mod tests {
         let image = RgbaImage::from_fn(2, 1, |x, _| image::Rgba([200, 100, 0, if x == 0 { 0 } else { 51 }]));
         let path = folder.path().join("a.png");
         image.save(&path).expect("an image");
-        let texture = Texture::cutout(path);
+        let texture = Texture::with_alpha(path, Alpha::CutsOut);
         assert_eq!([0, 1].map(|x| bytes_at(&texture, [x, 0])), [[200, 100, 0]; 2]);
         assert_eq!([0, 1].map(|x| texture.alpha(x, 0)), [0.0, 0.2]);
         assert!(texture.remarks().is_empty());

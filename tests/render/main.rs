@@ -8,6 +8,7 @@ mod common;
 mod backgrounds;
 mod bounces;
 mod colours;
+mod coverage;
 mod cuts;
 mod differences;
 mod docs;

@@ -52,6 +52,8 @@ pub struct Surroundings {
     pub uv: Option<DVec2>,
     /// The index of the face, from 0, where the shape has several.
     pub face: Option<u32>,
+    /// The fraction of what is behind the point that the surface covers, from 0 to 1; `None` where it covers all.
+    pub coverage: Option<f64>,
 }
 
 impl Answer {

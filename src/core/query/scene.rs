@@ -13,6 +13,7 @@ use tabray_render::trace;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::certify::{self, Enclosure, Precision};
 use tabray_world::geometry::aabb::{Aabb, SLACK};
+use tabray_world::geometry::ray::Side;
 use tabray_world::geometry::sight::{Line, Sight};
 use tabray_world::hittable::SurfaceHit;
 use tabray_world::scene::model::Model;
@@ -236,11 +237,16 @@ impl Query<'_> {
     /// proof names, or without a proof, of the one that the tracer finds. Where the ray passes through an edge, that is
     /// one of those that share the edge.
     pub fn surroundings(&self, ray: &QueryRay, answer: &Answer) -> Option<Surroundings> {
-        let shape = self.shape(answer.object.filter(|_| answer.distance.is_finite())?);
+        let index = answer.object.filter(|_| answer.distance.is_finite())?;
+        let (object, shape) = (&self.model().objects[index], self.shape(index));
         let point = ray.at(answer.distance);
         let SurfaceHit { normal, uv, face } =
             shape.surface_hit(&ray.sight().ray(), answer.distance, point, answer.part);
-        Some(Surroundings { point, normal, uv, face })
+        let coverage = object.shader.covers_in_part().then(|| {
+            let side = Side::seen_along(ray.sight().ray().dir, normal);
+            object.shader.coverage(&object.surface_point(point, side))
+        });
+        Some(Surroundings { point, normal, uv, face, coverage })
     }
 }
 

@@ -32,7 +32,7 @@ use tabray_core::world::lamp::Lamp;
 use tabray_core::world::material::Material;
 use tabray_core::world::rules::Rules;
 use tabray_core::world::sensor::Sensor;
-use tabray_core::world::texture::Texture;
+use tabray_core::world::texture::{Alpha, Texture};
 
 /// The entities of a scene, parsed during the check or before it.
 pub enum Source<'s, 'a> {
@@ -99,7 +99,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) materials: Vec<(usize, Arc<Material>)>,
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files, and whether they cut surfaces out.
-    files: HashMap<(PathBuf, bool), Arc<Texture>>,
+    files: HashMap<(PathBuf, Alpha), Arc<Texture>>,
     pub(super) shaders: Vec<(usize, ShaderFactory)>,
     /// The memory left for the images of textures, in bytes.
     pub(super) texture_memory: u64,
@@ -299,7 +299,7 @@ impl Check<'_, '_> {
                 if let Some(texture) = self.made(parsed, args, construct) {
                     self.report.add_file(texture.path().to_owned());
                     // Equal textures share one image, and so its file is read once.
-                    let texture = match self.files.entry((texture.path().to_owned(), texture.cuts_out())) {
+                    let texture = match self.files.entry((texture.path().to_owned(), texture.alpha_use())) {
                         Entry::Occupied(known) => known.get().clone(),
                         Entry::Vacant(free) => free.insert(Arc::new(texture)).clone(),
                     };

@@ -181,7 +181,8 @@ fn matt(model: Model) -> Model {
     let matt = |object: Object| {
         let material = Material { specular: Rgb::ZERO, transparency: 0.0, ..(*object.material).clone() };
         // Nearly all shaders use the material's reflectivity, and keep their speed.
-        let is_matt = object.shader.brightest(&material).is_some_and(|look| look.specular == Rgb::ZERO);
+        let is_matt = !object.shader.covers_in_part()
+            && object.shader.brightest(&material).is_some_and(|look| look.specular == Rgb::ZERO);
         let shader = if is_matt { object.shader } else { Arc::new(WithoutReflections(object.shader)) };
         Object { material: Arc::new(material), shader, ..object }
     };

@@ -40,6 +40,8 @@ enum Value {
     Flag(fn(&Answered) -> Option<bool>),
     /// A number; NaN or infinite in arrays where there is none.
     Number(fn(&Answer) -> f64),
+    /// A fraction, where it is below 1; 1 in arrays where there is none.
+    Part(fn(&Surroundings) -> Option<f64>),
     /// Numbers with these names in CSV, at most three; NaN in arrays where there are none.
     Vector(&'static [&'static str], fn(&Surroundings) -> Option<[f64; 3]>),
 }
@@ -55,7 +57,7 @@ impl Column {
 }
 
 /// The columns in the order of JSON and of arrays.
-static COLUMNS: [Column; 15] = [
+static COLUMNS: [Column; 16] = [
     Column::text(RAY, Value::Index(|of| of.ray)),
     Column::both("verdict", Value::Word(|of| verdict(of.verdict))),
     Column::both("proof", Value::Word(|of| proof(of.proof))),
@@ -70,6 +72,7 @@ static COLUMNS: [Column; 15] = [
     Column::both("point", Value::Vector(&["x", "y", "z"], |at| Some(at.point.to_array()))),
     Column::both("normal", Value::Vector(&["nx", "ny", "nz"], |at| Some(at.normal.to_array()))),
     Column::both("uv", Value::Vector(&["u", "v"], |at| at.uv.map(|uv| [uv.x, uv.y, f64::NAN]))),
+    Column::both("coverage", Value::Part(|at| at.coverage)),
     Column::both("surface", Value::Index(|of| Some(of.query.surface(&of.answer)? as u64))),
 ];
 
@@ -176,6 +179,10 @@ impl Value {
             Self::Word(word) => Cell::Word(of.map_or(0, |of| word(&of.answer).1)),
             Self::Index(index) => Cell::Index(of.and_then(index).map_or(-1, |index| index as i32)),
             Self::Number(number) => Cell::Number(of.map_or(f64::NAN, |of| number(&of.answer))),
+            Self::Part(part) => {
+                let part = of.and_then(|of| part(of.surface.as_ref()?));
+                Cell::Number(part.unwrap_or(1.0))
+            }
             Self::Vector(names, vector) => {
                 let numbers = of.and_then(|of| vector(of.surface.as_ref()?));
                 Cell::Vector(numbers.unwrap_or([f64::NAN; 3]), names.len())
@@ -207,6 +214,7 @@ impl Answered<'_, '_> {
                 Value::Index(index) => fields.push(written(index(self))),
                 Value::Flag(flag) => fields.push(written(flag(self))),
                 Value::Number(number) => fields.push(written(finite(number(&self.answer)))),
+                Value::Part(part) => fields.push(written(self.surface.as_ref().and_then(part))),
                 Value::Vector(names, vector) => {
                     let numbers = self.surface.as_ref().and_then(vector);
                     fields.extend((0..names.len()).map(|at| written(numbers.map(|numbers| numbers[at]))));
@@ -240,6 +248,7 @@ impl Serialize for Answered<'_, '_> {
                 Value::Index(index) => entry(&mut map, name, index(self))?,
                 Value::Flag(flag) => entry(&mut map, name, flag(self))?,
                 Value::Number(number) => entry(&mut map, name, finite(number(&self.answer)))?,
+                Value::Part(part) => entry(&mut map, name, self.surface.as_ref().and_then(part))?,
                 Value::Vector(names, vector) => {
                     let numbers = self.surface.as_ref().and_then(vector);
                     entry(&mut map, name, numbers.as_ref().map(|numbers| &numbers[..names.len()]))?;

@@ -41,6 +41,9 @@ pub trait Endpoint: Precise {
     /// Encloses the look of an object at a point.
     fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>>;
 
+    /// Encloses the fraction of what is behind a point that an object covers.
+    fn coverage(object: &Object, at: &PointBounds<Self>) -> Interval<Self>;
+
     /// Encloses the unit normals that a shader makes of outward ones at a point.
     fn bent(
         shader: &(dyn EnclosedShader + 'static),
@@ -63,6 +66,11 @@ where
             shader = colours;
         }
         EncloseLook::<F>::look(shader, &object.material, at)
+    }
+
+    fn coverage(object: &Object, at: &PointBounds<Self>) -> Interval<Self> {
+        let shader: &(dyn EnclosedShader + 'static) = &*object.shader;
+        EncloseLook::<F>::coverage_bounds(shader, at)
     }
 
     fn bent(

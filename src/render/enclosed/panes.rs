@@ -74,7 +74,7 @@ pub(super) fn passed<N: Number>(
 ) -> Passes<N> {
     let objects = &scene.model.objects;
     let coarse = coarse(&path.line);
-    let is_glass = |object: &usize| objects[*object].material.transparency != 0.0;
+    let is_glass = |object: &usize| !objects[*object].is_opaque();
     let mut panes = Panes { at: Vec::new(), ways: Vec::new(), passed: None };
     let (mut open, mut is_blocked) = (Vec::new(), false);
     let mut met = Vec::new();
@@ -238,6 +238,16 @@ fn is_inside<N: Number>(scene: &EnclosedScene, place: Place, at: [N; 3], dir: [N
 fn pane_tint<N: Number>(scene: &EnclosedScene, place: Place, at: [N; 3]) -> Option<Colour<N>> {
     let pane = &scene.model.objects[place.object];
     let seen = PointBounds::seen(pane.shape.proven()?, pane.shader.sees(), place.part, ranges(at), None);
-    let diffuse = N::End::look(pane, &seen)?.diffuse;
-    tint(pane.material.transparency, per_axis(|channel| N::enclosing(diffuse[channel])))
+    let tint = match pane.material.transparency {
+        0.0 => [N::constant(0.0); 3],
+        transparency => {
+            let diffuse = N::End::look(pane, &seen)?.diffuse;
+            tint(transparency, per_axis(|channel| N::enclosing(diffuse[channel])))?
+        }
+    };
+    if !pane.shader.covers_in_part() {
+        return Some(tint);
+    }
+    let covered = N::enclosing(N::End::coverage(pane, &seen));
+    Some(per_axis(|channel| covered * tint[channel] + (N::constant(1.0) - covered)))
 }

@@ -166,11 +166,30 @@ impl<'s> EnclosingTracer<'s> {
                 None => self.shaded(ray, t, &surface)?,
                 Some(interface) => self.divided(ray, t, &surface, interface)?,
             };
+            let shaded = match surface.coverage {
+                None => shaded,
+                Some(covered) => self.covered(ray, t, &surface, &shaded, covered)?,
+            };
             let medium = media::between(self.scene, &ray.path, Some((place.object, surface.is_inside)));
             let shaded = absorbed(shaded, medium, Some(t * ray.length));
             any = Some(any.map_or(shaded, |any| hull(any, shaded)));
         }
         any
+    }
+
+    /// Encloses the means of what covers a part of the points and of what is behind them.
+    fn covered<N: Number>(
+        &mut self,
+        ray: &Ray<N>,
+        t: N,
+        surface: &HitPoints<N>,
+        own: &Colour<N>,
+        covered: N,
+    ) -> Option<Colour<N>> {
+        let open = [N::constant(1.0) - covered; 3];
+        let onward = Onward { dir: ray.path.line.dir, keeps: true, through: true };
+        let behind = self.secondary(ray, surface, ray.travelled + t * ray.length, onward, &open)?;
+        Some(per_axis(|channel| rules::transmitted(own[channel], covered, behind[channel], open[channel])))
     }
 
     fn shaded<N: Number>(&mut self, ray: &Ray<N>, t: N, surface: &HitPoints<N>) -> Option<Colour<N>> {

@@ -33,6 +33,8 @@ pub(super) struct HitPoints<N> {
     pub ambient: Colour<N>,
     pub diffuse: Colour<N>,
     pub specular: Colour<N>,
+    /// The fraction of what is behind the points that they cover; `None` where they cover all.
+    pub coverage: Option<N>,
 }
 
 impl<N: Number> HitPoints<N> {
@@ -113,6 +115,8 @@ impl<N: Number> HitPoints<N> {
         }
         let point = PointBounds { patch: bounds, ..seen(at_ranges) };
         let look = N::End::look(object, &point)?;
+        let covers_in_part = object.shader.covers_in_part();
+        let coverage = covers_in_part.then(|| N::enclosing(N::End::coverage(object, &point)));
         let normal = if object.shader.bends() {
             // The normals are those of the point, not the mean over a patch.
             let mut point = seen(ranges(at));
@@ -144,6 +148,7 @@ impl<N: Number> HitPoints<N> {
             ambient,
             diffuse,
             specular: enclosing(look.specular),
+            coverage,
         })
     }
 

@@ -57,6 +57,7 @@ impl SameLook {
 fn is_plain(Object { material, shader, .. }: &Object) -> bool {
     let sees = shader.sees();
     material.transparency == 0.0
+        && !shader.covers_in_part()
         && material.interface.is_none()
         && material.medium().is_none()
         && material.roughness() == 0.0

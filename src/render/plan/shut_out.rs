@@ -54,7 +54,7 @@ pub(super) fn shut_out(model: &Model, objects: &Objects) -> Vec<ShutOut> {
         let object = &model.objects[*index];
         let is_inside = is_inside(object, viewer.middle, viewer.radius);
         // Whether a mesh is closed may take long to find out.
-        object.material.transparency == 0.0
+        object.is_opaque()
             && !is_behind_glass(model, *index)
             && is_inside.is_some_and(|is_inside| self::is_inside(object, at, size) == Some(!is_inside))
             && object.shape.why_not_closed().is_none()
@@ -78,7 +78,7 @@ fn is_behind_glass(model: &Model, index: usize) -> bool {
         (Some(bounds), Some(of_other)) => bounds.overlaps(&of_other),
         _ => true,
     };
-    model.objects[..index].iter().any(|other| other.material.transparency != 0.0 && may_touch(other))
+    model.objects[..index].iter().any(|other| !other.is_opaque() && may_touch(other))
 }
 
 /// Tells whether a ball lies inside of a closed object, rather than outside; `None` where that is not certain.

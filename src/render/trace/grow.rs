@@ -160,7 +160,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let ShadingScratch { surface, dir, diffuse, .. } = shading;
         let object = &self.model.objects[surface.index];
         let transparency = object.material.transparency;
-        if transparency == 0.0 && !surface.is_mirror && object.material.interface.is_none() && !scatters {
+        let covers_all = surface.coverage.is_empty();
+        if covers_all
+            && transparency == 0.0
+            && !surface.is_mirror
+            && object.material.interface.is_none()
+            && !scatters
+        {
             return;
         }
         let Some(mut scratch) = self.scratch.trees.take() else { return };
@@ -172,14 +178,18 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         for lane in 0..group.len {
             let side = surface.sides[lane];
             let tint = || surface.tint(object, lane);
-            let (through, onward, reflected) = match &crossings {
+            let covered = surface.coverage.get(lane).copied().unwrap_or(1.0);
+            let beyond = Rgb::splat(1.0 - covered);
+            let (through, onward, reflected, beyond) = match &crossings {
                 Some(crossings) => {
                     let Crossing { reflected, onward } = crossings[lane];
-                    (onward.map_or(Rgb::ZERO, |_| tint() * (Rgb::ONE - reflected)), onward, reflected)
+                    let through = onward.map_or(Rgb::ZERO, |_| covered * tint() * (Rgb::ONE - reflected));
+                    (through, onward, reflected, beyond)
                 }
+                // What is transmitted unbent and what is not covered are one ray.
                 None => {
-                    let through = if transparency == 0.0 { Rgb::ZERO } else { tint() };
-                    (through, Some(group.dir.get(lane)), surface.mirror(lane))
+                    let through = if transparency == 0.0 { Rgb::ZERO } else { covered * tint() };
+                    (through + beyond, Some(group.dir.get(lane)), surface.mirror(lane), Rgb::ZERO)
                 }
             };
             colours.set(lane, kept * colours.get(lane));
@@ -192,7 +202,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let ray = surface.open_ray(lane, before);
             let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
                 let keeps = match kind {
-                    RayKind::Transmitted => crossings.is_none(),
+                    RayKind::Transmitted => dir == group.dir.get(lane),
                     RayKind::Scattered => false,
                     _ => is_flat,
                 };
@@ -214,13 +224,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let scattered = scattered
                 .and_then(|dir| {
                     let passed = surface.passed_by_coat(&object.material, lane, group.dir.get(lane), dir);
-                    open(kept * passed * diffuse.get(lane), dir, side, RayKind::Scattered)
+                    open(covered * kept * passed * diffuse.get(lane), dir, side, RayKind::Scattered)
                 })
                 .map(|ray| OpenRay { bounces: before.bounces + 1, ..ray });
             scratch.outcomes[place].onward = [
                 onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),
-                open(reflected, dir.get(lane), side, RayKind::Reflected),
+                open(covered * reflected, dir.get(lane), side, RayKind::Reflected),
                 scattered,
+                open(beyond, group.dir.get(lane), side.opposite(), RayKind::Transmitted),
             ];
         }
         self.scratch.trees = Some(scratch);

@@ -92,6 +92,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let material = &object.material;
         self.find_surface(group, distances, index, surface, colours);
         let is_free = self.plan.camera.rules == Rules::Free;
+        surface.coverage.clear();
+        if is_free {
+            surface.cover(object, count);
+        }
         let (glints, roughness) = (material.glints(), material.roughness());
         let gleams = is_free && roughness != 0.0 && self.aims();
         match glints {
@@ -134,6 +138,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         if glints || gleams {
             (0..count).for_each(|lane| colours.set(lane, colours.get(lane) + shading.glints.get(lane)));
+        }
+        for (lane, covered) in shading.surface.coverage.iter().enumerate() {
+            colours.set(lane, *covered * colours.get(lane));
         }
         for (lane, passed) in shading.surface.passed.iter().enumerate() {
             colours.set(lane, colours.get(lane) * *passed);

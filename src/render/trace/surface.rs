@@ -50,6 +50,8 @@ pub(super) struct Surface {
     pub facets: Vec<Facets>,
     /// The fraction of light that passes from each point to the start of its ray; empty if all does.
     pub passed: Vec<Rgb>,
+    /// The fraction of what is behind each point that it covers; empty if all is covered.
+    pub coverage: Vec<f64>,
 }
 
 /// The surroundings of hit points, as the rays of a packet see them, where samples show patches.
@@ -123,6 +125,18 @@ impl Surface {
             any |= shines[lane] != 0;
         }
         any
+    }
+
+    /// Computes how much of what is behind them the points cover.
+    pub fn cover(&mut self, object: &Object, count: usize) {
+        self.coverage.clear();
+        if object.shader.covers_in_part() {
+            let coverage = |lane: usize| match self.seen.get(lane) {
+                Some(at) => object.shader.coverage(at),
+                None => object.shader.coverage(&SurfacePoint::at(self.points.get(lane))),
+            };
+            self.coverage.extend((0..count).map(coverage));
+        }
     }
 
     /// Mirrors rays that hit the points in these directions.

@@ -61,7 +61,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
                 continue;
             };
-            if self.model.objects[index].material.transparency == 0.0 {
+            if self.model.objects[index].is_opaque() {
                 lanes.iter().for_each(|lane| blocker[usize::from(*lane)] = id);
                 continue;
             }
@@ -99,7 +99,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let normal = object.shape.normal(point);
             let side = Side::seen_along(ray.dir, normal);
             let passed = self.passed(group, lane, distances[lane], Some((index, side)));
-            let tint_here = object.tint(&object.surface_point(point, side)) * passed.unwrap_or(Rgb::ONE);
+            let tint_here = object.passed(&object.surface_point(point, side)) * passed.unwrap_or(Rgb::ONE);
             group.sides[lane] = side.opposite();
             group.cosines[lane] = ray.dir.dot(normal);
             group.travelled[lane] += distances[lane];

@@ -16,7 +16,7 @@ pub(super) struct Outcome {
     /// The work that it took, in simple rays.
     pub cost: u32,
     /// The rays that continue.
-    pub onward: [Option<OpenRay>; 3],
+    pub onward: [Option<OpenRay>; 4],
 }
 
 /// The scratch space of trees.

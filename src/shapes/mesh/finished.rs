@@ -1,6 +1,6 @@
 //! Appearances of faces as given by a mesh's file.
 
-use super::read::{Finish, Map};
+use super::read::{Finish, Map, Opacity};
 use super::surface::Surface;
 use crate::uv;
 use glam::{DVec2, DVec3};
@@ -23,6 +23,7 @@ pub struct Finished {
     has_images: bool,
     bends: bool,
     cuts_out: bool,
+    covers_in_part: bool,
 }
 
 /// A point of a face.
@@ -47,9 +48,15 @@ impl Finished {
         let any = |is: fn(&Finish) -> bool| surface.finishes.iter().flatten().any(is);
         let has_images = any(|finish| finish.maps().next().is_some());
         let bends = any(|finish| finish.normals.is_some());
-        let is_cut = |slot: &u16| surface.finish(*slot).is_some_and(|finish| finish.mask.is_some());
-        let cuts_out = any(|finish| finish.mask.is_some()) && surface.slots.iter().any(is_cut);
-        Self { surface, has_images, bends, cuts_out }
+        let used = |is: fn(&Opacity) -> bool| {
+            let is = |finish: &Finish| finish.opacity.as_ref().is_some_and(is);
+            surface.finishes.iter().flatten().any(is)
+                && surface.slots.iter().any(|slot| surface.finish(*slot).is_some_and(is))
+        };
+        let are_thin = surface.colours.values.iter().any(|[.., covered]| *covered < 1.0);
+        let cuts_out = used(Opacity::has_holes);
+        let covers_in_part = are_thin || used(Opacity::covers_in_part);
+        Self { surface, has_images, bends, cuts_out, covers_in_part }
     }
 
     fn spot(&self, at: DVec3) -> Spot<'_> {
@@ -83,17 +90,39 @@ impl Finished {
         map.texture.blended(place, |column, row| map.texture.texel(column, row))
     }
 
+    /// Returns the colour of the image of a finish at a spot, or white without an image. Where a part is covered, it is
+    /// that of the point, not the mean over a patch.
+    fn light_by_alpha(&self, spot: &Spot, finish: &Finish, patch: Option<Patch>) -> Rgb {
+        let Some(map) = &finish.colours else { return Rgb::ONE };
+        let covers_in_part = finish.opacity.as_ref().is_some_and(Opacity::covers_in_part);
+        if !covers_in_part || !map.texture.has_alpha() {
+            return self.light(spot, Some(map), patch);
+        }
+        self.place(spot, map, None).map_or(Rgb::ONE, |[place, _]| map.texture.blended_by_alpha(place))
+    }
+
     /// Returns the corner colours of a face, blended at a spot, or white if it has none.
     fn tint(&self, spot: &Spot) -> Rgb {
         let Some(colours) = self.surface.colours.at(spot.face) else { return Rgb::ONE };
-        let [a, b, c] = colours.map(|colour| Rgb::from(colour.map(f64::from)));
+        self.blended(spot, colours.map(|[red, green, blue, _]| [red, green, blue]))
+    }
+
+    /// Returns the fraction that the corner colours of a face cover at a spot.
+    fn covered_by_corners(&self, spot: &Spot) -> f64 {
+        let Some(colours) = self.surface.colours.at(spot.face) else { return 1.0 };
+        self.blended(spot, colours.map(|[.., covered]| [covered; 3])).x
+    }
+
+    /// Blends values at the corners of a face.
+    fn blended(&self, spot: &Spot, values: [[f32; 3]; 3]) -> DVec3 {
+        let [a, b, c] = values.map(|value| DVec3::from(value.map(f64::from)));
         let weights = uv::on_triangle(spot.corners, spot.at).clamp(DVec2::ZERO, DVec2::ONE);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         (a + weights.x * (b - a) + weights.y * (c - a)).clamp(low, high)
     }
 
     fn colour(&self, spot: &Spot, finish: &Finish, patch: Option<Patch>) -> Rgb {
-        finish.colour * self.light(spot, finish.colours.as_ref(), patch) * self.tint(spot)
+        finish.colour * self.light_by_alpha(spot, finish, patch) * self.tint(spot)
     }
 
     /// Bounds the channels of all corner colours.
@@ -206,7 +235,7 @@ impl Shader for Finished {
 
     fn glowing(&self) -> Vec<(Luminous, Rgb)> {
         let mut parts: Vec<(Rgb, Vec<[DVec3; 3]>)> = Vec::new();
-        for face in 0..if self.cuts_out { 0 } else { self.surface.face_count() } {
+        for face in 0..if self.cuts_out || self.covers_in_part { 0 } else { self.surface.face_count() } {
             let even = self.finish(face).filter(|finish| finish.emissions.is_none());
             let Some(light) = even.map(|finish| finish.emission).filter(|light| *light != Rgb::ZERO) else {
                 continue;
@@ -261,8 +290,32 @@ impl Shader for Finished {
 
     fn is_cut_out(&self, at: &SurfacePoint) -> bool {
         let spot = self.spot(at.position);
-        let mask = spot.finish.and_then(|finish| finish.mask.as_ref());
-        mask.is_some_and(|mask| mask.cuts_out(|map| self.place(&spot, map, None).map(|[place, _]| place)))
+        let opacity = spot.finish.and_then(|finish| finish.opacity.as_ref());
+        opacity.is_some_and(|opacity| opacity.is_hole(|map| Some(self.place(&spot, map, None)?[0])))
+    }
+
+    fn covers_in_part(&self) -> bool {
+        self.covers_in_part
+    }
+
+    fn coverage(&self, at: &SurfacePoint) -> f64 {
+        let spot = self.spot(at.position);
+        let opacity = spot.finish.and_then(|finish| finish.opacity.as_ref());
+        let covered =
+            opacity.map_or(1.0, |opacity| opacity.coverage(|map| Some(self.place(&spot, map, None)?[0])));
+        covered * self.covered_by_corners(&spot)
+    }
+
+    fn enclose_coverage<F: Precise>(&self, at: &PointBounds<F>) -> Interval<F> {
+        let range = |finish: Option<&Finish>| {
+            finish.and_then(|finish| finish.opacity.as_ref()).map_or([1.0; 2], Opacity::range)
+        };
+        let coarse = at.position.map(Interval::coarse);
+        let face = self.surface.face_at(DVec3::from(coarse.map(Interval::middle)));
+        let is_known =
+            self.surface.colours.is_empty() && self.surface.is_alone(coarse, |other| other == face);
+        let [low, high] = if is_known { range(self.finish(face)) } else { [0.0, 1.0] };
+        Interval::constant(low).hull(Interval::constant(high))
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {

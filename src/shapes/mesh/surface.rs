@@ -51,7 +51,7 @@ pub struct Surface {
     pub(super) normals: Normals,
     /// The texture coordinates and the colours at the corners of faces, if they are read.
     pub(super) uv: AtCorners<[f32; 2]>,
-    pub(super) colours: AtCorners<[f32; 3]>,
+    pub(super) colours: AtCorners<[f32; 4]>,
     pub(super) tree: Bvh,
     /// A bounding box of the vertices, in world coordinates.
     pub(super) bounds: Aabb,
@@ -272,9 +272,8 @@ impl Surface {
         vertices.iter().flat_map(|at| at.to_array()).for_each(|part| each(&part.to_le_bytes()));
         faces.iter().flatten().chain(order).for_each(|index| each(&index.to_le_bytes()));
         slots.iter().for_each(|slot| each(&slot.to_le_bytes()));
-        for list in [&normals.values, &colours.values] {
-            list.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
-        }
+        normals.values.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
+        colours.values.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
         uv.values.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
         for list in [&normals.faces, &uv.faces, &colours.faces] {
             list.iter().flatten().for_each(|index| each(&index.to_le_bytes()));

@@ -5,6 +5,7 @@ use super::packets::PART;
 use super::shape::Placed;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::interval::Interval;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::body::{AnyShader, Body, MakeBoundary};
 use tabray_world::certify::Precise;
@@ -65,6 +66,17 @@ impl PlacedShader {
 
     fn own(&self) -> &dyn PacketShader {
         self.shader.as_deref().unwrap_or(&*self.placed.body.shader)
+    }
+
+    /// Maps the bounds of a point from world space to object space.
+    fn object_bounds<F: Precise>(&self, at: &PointBounds<F>) -> PointBounds<F> {
+        let placement = &self.placed.placement;
+        let patch = at.patch.map(|patch| PatchBounds {
+            middle: placement.point(patch.middle),
+            sides: patch.sides.map(|side| placement.vector(side)),
+            ..patch
+        });
+        PointBounds { position: placement.point(at.position), normal: None, patch, tangents: None, ..*at }
     }
 
     /// Maps a point from world space to object space.
@@ -143,15 +155,20 @@ impl Shader for PlacedShader {
         self.own().is_cut_out(&self.object_point(at))
     }
 
+    fn covers_in_part(&self) -> bool {
+        self.own().covers_in_part()
+    }
+
+    fn coverage(&self, at: &SurfacePoint) -> f64 {
+        self.own().coverage(&self.object_point(at))
+    }
+
+    fn enclose_coverage<F: Precise>(&self, at: &PointBounds<F>) -> Interval<F> {
+        shader::enclosed_coverage(self.own(), &self.object_bounds(at))
+    }
+
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let position = self.placed.placement.point(at.position);
-        let patch = at.patch.map(|patch| PatchBounds {
-            middle: self.placed.placement.point(patch.middle),
-            sides: patch.sides.map(|side| self.placed.placement.vector(side)),
-            ..patch
-        });
-        let own = PointBounds { position, normal: None, patch, tangents: None, ..*at };
-        shader::enclosed(self.own(), material, &own)
+        shader::enclosed(self.own(), material, &self.object_bounds(at))
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use tabray_exact::interval::Interval;
 use tabray_world::body::Body;
 use tabray_world::certify::Precise;
 use tabray_world::material::{Look, Material, Rgb};
@@ -42,6 +43,18 @@ impl Shader for PartShader {
 
     fn bend(&self, at: &SurfacePoint) -> DVec3 {
         self.0.shader.bend(at)
+    }
+
+    fn covers_in_part(&self) -> bool {
+        self.0.shader.covers_in_part()
+    }
+
+    fn coverage(&self, at: &SurfacePoint) -> f64 {
+        self.0.shader.coverage(at)
+    }
+
+    fn enclose_coverage<F: Precise>(&self, at: &PointBounds<F>) -> Interval<F> {
+        shader::enclosed_coverage(&*self.0.shader, at)
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {

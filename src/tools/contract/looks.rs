@@ -66,6 +66,10 @@ pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault>
             return Err(Promise::ReflectivityIsSound.fault(found(format!("`{what}` is {colour}"))));
         }
     }
+    let covered = shader.coverage(at);
+    if shader.covers_in_part() && !(0.0..=1.0).contains(&covered) {
+        return Err(Promise::ReflectivityIsSound.fault(found(format!("`coverage` is {covered}"))));
+    }
     if let Some(Look { ambient, diffuse, specular }) = shader.uniform(&material)
         && one != [ambient, diffuse, specular]
     {

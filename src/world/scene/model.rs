@@ -151,6 +151,23 @@ impl Object {
         SurfacePoint::seen(&*self.shape, sees, position, normal, side)
     }
 
+    /// Tells whether no light passes through the object.
+    #[inline]
+    pub fn is_opaque(&self) -> bool {
+        self.material.transparency == 0.0 && !self.shader.covers_in_part()
+    }
+
+    /// Returns the fraction of light that passes through on its way from a lamp at this point, for each channel: all
+    /// where nothing is [covered](crate::shader::Shader::coverage), and the [tint](Self::tint) of what is.
+    pub fn passed(&self, at: &SurfacePoint) -> Rgb {
+        let tint = if self.material.transparency == 0.0 { Rgb::ZERO } else { self.tint(at) };
+        if !self.shader.covers_in_part() {
+            return tint;
+        }
+        let covered = self.shader.coverage(at);
+        covered * tint + Rgb::splat(1.0 - covered)
+    }
+
     /// Returns the fraction of light that passes through at this point, for each channel: transparency times the
     /// diffuse colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey. The fraction
     /// is at most 1, and below 0 where the diffuse colour is below 0.

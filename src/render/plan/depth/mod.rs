@@ -96,7 +96,7 @@ impl Depth {
     pub fn new(model: &Model) -> Option<Self> {
         let is_shiny = |object: &Object| {
             let look = object.shader.brightest(&object.material);
-            object.material.transparency != 0.0 || look.is_none_or(|look| look.specular != Rgb::ZERO)
+            !object.is_opaque() || look.is_none_or(|look| look.specular != Rgb::ZERO)
         };
         let bounces = model.camera.value.bounces != 0;
         (bounces || model.objects.iter().any(is_shiny)).then(|| Self::of(model))

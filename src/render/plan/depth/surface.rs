@@ -43,6 +43,8 @@ pub(super) struct SurfaceLight {
     scattered: f64,
     /// Whether light is divided between the two, by an interface.
     is_split: bool,
+    /// Whether rays pass through what the surface does not cover.
+    covers_in_part: bool,
     /// A factor of the light that an interface passes on: 1, or [`HELD`] where only that gives a bound under the free
     /// rules.
     held: f64,
@@ -85,6 +87,7 @@ impl SurfaceLight {
                         gain(1.0 - object.material.transparency, of.largest(look.diffuse)) * ROUNDING
                     }),
                     is_split,
+                    covers_in_part: object.shader.covers_in_part(),
                 }
             })
             .collect()
@@ -102,7 +105,7 @@ impl SurfaceLight {
 
     /// Tells whether rays continue from the surface.
     pub fn goes_on(&self) -> bool {
-        self.through != 0.0 || self.mirrored != 0.0
+        self.through != 0.0 || self.mirrored != 0.0 || self.covers_in_part
     }
 
     /// Bounds the light of rays that hit each side of the surface, given its own light and that of rays that leave
@@ -112,7 +115,12 @@ impl SurfaceLight {
             let (through, mirrored) = (gain(self.through, through), gain(self.mirrored, mirrored));
             if self.is_split { self.held * above(through, mirrored) } else { through + mirrored }
         };
-        [own + continuation(inside, outside), own + continuation(outside, inside)]
+        let met = |through: f64, mirrored: f64| {
+            let covered = own + continuation(through, mirrored);
+            // What is seen is a mean of what covers and of what is behind it.
+            if self.covers_in_part { above(covered, through) } else { covered }
+        };
+        [met(inside, outside), met(outside, inside)]
     }
 
     /// Returns the surface's own light in the unit of shares: 1, or 0 where an interface passes on all light.

@@ -86,8 +86,8 @@ pub struct Attributes {
     pub normals: AtCorners<[f32; 3]>,
     /// Texture coordinates, counted from the left and from the bottom.
     pub uv: AtCorners<[f32; 2]>,
-    /// Colours, as linear light.
-    pub colours: AtCorners<[f32; 3]>,
+    /// Colours, as linear light, and the fractions that they cover of what is behind them.
+    pub colours: AtCorners<[f32; 4]>,
 }
 
 impl Attributes {

@@ -16,26 +16,30 @@ pub struct Map {
     pub offset: DVec2,
 }
 
-/// A mask that cuts holes into a surface.
+/// How opaque a surface is from place to place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mask {
-    /// The image with the opacity of the surface. Without an image, the surface is opaque.
+pub struct Opacity {
+    /// The image of the opacity. Without an image, it is the same everywhere.
     map: Option<Map>,
-    /// The minimum opacity outside of holes.
-    least: f64,
+    /// The opacity, or the factor of the image's.
+    factor: f64,
+    /// The minimum opacity outside of holes: with it, all else is opaque. Without it, the surface covers as much of
+    /// what is behind it as it is opaque.
+    cutoff: Option<f64>,
 }
 
-impl Mask {
-    /// Makes a mask from an image and the minimum opacity outside of holes, or `None` if there are no holes.
-    pub fn new(map: Option<Map>, least: f64) -> Option<Self> {
+impl Opacity {
+    /// Returns the opacity of a surface, or `None` if it is opaque everywhere.
+    pub fn new(map: Option<Map>, factor: f64, cutoff: Option<f64>) -> Option<Self> {
         let [width, height] = map.as_ref().map_or([1, 1], |map| map.texture.size());
-        let mask = Self { map, least };
+        let opacity = Self { map, factor: factor.clamp(0.0, 1.0), cutoff };
+        let least = cutoff.unwrap_or(1.0);
         let mut texels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-        texels.any(|(column, row)| mask.opacity(column, row) < least).then_some(mask)
+        texels.any(|(column, row)| opacity.factor * opacity.texel(column, row) < least).then_some(opacity)
     }
 
     /// Returns the opacity of a texel: its alpha or, in an opaque image, its brightness.
-    fn opacity(&self, column: u32, row: u32) -> f64 {
+    fn texel(&self, column: u32, row: u32) -> f64 {
         let Some(Map { texture, .. }) = &self.map else { return 1.0 };
         if texture.has_alpha() {
             texture.alpha(column, row)
@@ -44,13 +48,44 @@ impl Mask {
         }
     }
 
-    /// Tells whether a point is in a hole. `place` returns its position in an image, in texels.
-    pub fn cuts_out(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> bool {
+    /// Returns the opacity at a point. `place` returns its position in an image, in texels.
+    fn at(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> f64 {
         let blended = |map: &Map| {
-            let opacity = |column, row| DVec3::splat(self.opacity(column, row));
+            let opacity = |column, row| DVec3::splat(self.texel(column, row));
             place(map).map(|place| map.texture.blended(place, opacity).x)
         };
-        self.map.as_ref().and_then(blended).unwrap_or(1.0) < self.least
+        self.factor * self.map.as_ref().and_then(blended).unwrap_or(1.0)
+    }
+
+    /// Tells whether any point is in a hole.
+    pub fn has_holes(&self) -> bool {
+        self.cutoff.is_some() || self.map.is_some() || self.factor == 0.0
+    }
+
+    /// Tells whether a point is in a hole, as [`coverage`](Self::coverage) takes it.
+    pub fn is_hole(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> bool {
+        let opacity = self.at(place);
+        self.cutoff.map_or(opacity <= 0.0, |least| opacity < least)
+    }
+
+    /// Tells whether points that are in no hole cover a part of what is behind them.
+    pub fn covers_in_part(&self) -> bool {
+        self.cutoff.is_none()
+    }
+
+    /// Returns the fraction that a point in no hole covers of what is behind it. `place` returns its position in an
+    /// image, in texels.
+    pub fn coverage(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> f64 {
+        if self.covers_in_part() { self.at(place) } else { 1.0 }
+    }
+
+    /// Returns the least and the greatest [`coverage`](Self::coverage).
+    pub fn range(&self) -> [f64; 2] {
+        match (self.covers_in_part(), &self.map) {
+            (false, _) => [1.0; 2],
+            (true, None) => [self.factor; 2],
+            (true, Some(_)) => [0.0, self.factor],
+        }
     }
 }
 
@@ -75,8 +110,8 @@ pub struct Finish {
     pub shininess: f64,
     /// The fraction of light that passes through.
     pub transparency: f64,
-    /// The mask with the holes of the surface.
-    pub mask: Option<Mask>,
+    /// How opaque the surface is, if it is not opaque everywhere.
+    pub opacity: Option<Opacity>,
 }
 
 impl Default for Finish {
@@ -91,7 +126,7 @@ impl Default for Finish {
             normals: None,
             shininess: 0.0,
             transparency: 0.0,
-            mask: None,
+            opacity: None,
         }
     }
 }
@@ -100,8 +135,8 @@ impl Finish {
     /// Returns the images of the material.
     pub fn maps(&self) -> impl Iterator<Item = &Map> {
         let normals = self.normals.iter().map(|(map, _)| map);
-        let masks = self.mask.iter().flat_map(|mask| &mask.map);
-        self.colours.iter().chain(&self.emissions).chain(normals).chain(masks)
+        let opacity = self.opacity.iter().flat_map(|opacity| &opacity.map);
+        self.colours.iter().chain(&self.emissions).chain(normals).chain(opacity)
     }
 
     /// Calls a function with the contents of the material, as bytes.
@@ -109,13 +144,14 @@ impl Finish {
         let Self { colour, metal, specular, emission, shininess, transparency, .. } = self;
         let colours = [colour, specular, emission].into_iter().flat_map(|colour| colour.to_array());
         let slopes = self.normals.as_ref().map_or(0.0, |(_, slopes)| *slopes);
-        let mask = self.mask.as_ref();
-        let least = mask.map_or(0.0, |mask| mask.least);
-        let numbers = colours.chain([*metal, *shininess, *transparency, slopes, least]);
+        let opacity = self.opacity.as_ref();
+        let least = opacity.and_then(|opacity| opacity.cutoff).unwrap_or(0.0);
+        let factor = opacity.map_or(1.0, |opacity| opacity.factor);
+        let numbers = colours.chain([*metal, *shininess, *transparency, slopes, least, factor]);
         numbers.for_each(|number| each(&number.to_le_bytes()));
         let normals = self.normals.as_ref().map(|(map, _)| map);
-        let masks = mask.and_then(|mask| mask.map.as_ref());
-        for map in [self.colours.as_ref(), self.emissions.as_ref(), normals, masks] {
+        let opacity = opacity.and_then(|opacity| opacity.map.as_ref());
+        for map in [self.colours.as_ref(), self.emissions.as_ref(), normals, opacity] {
             each(&[u8::from(map.is_some())]);
             let Some(Map { texture, scale, offset }) = map else { continue };
             let numbers = scale.to_array().into_iter().chain(offset.to_array());

@@ -8,6 +8,7 @@ use glam::DVec3;
 use std::fmt;
 use std::path::PathBuf;
 use tabray_world::display::Display;
+use tabray_world::rules::Rules;
 use tabray_world::text;
 
 /// The error of a truncated file.
@@ -64,6 +65,11 @@ pub struct Wanted {
 }
 
 impl Wanted {
+    /// Tells whether surfaces may cover a part of what is behind them, as they may by the free rules of light.
+    pub fn covers_in_part(self) -> bool {
+        self.materials.is_some_and(|display| display.rules() == Rules::Free)
+    }
+
     /// Returns the maximum number of lists for the corners of faces.
     fn lists(self) -> u64 {
         u64::from(self.normals) + 2 * u64::from(self.materials.is_some())

@@ -1,7 +1,7 @@
 //! Material files of OBJ.
 
 use super::blocks::{self, Words, words};
-use super::finish::{Finish, Map, Mask};
+use super::finish::{Finish, Map, Opacity};
 use super::model::{MemoryBudget, Model, Remark};
 use super::textures::{Textures, first_of};
 use glam::{DVec2, DVec3};
@@ -50,11 +50,13 @@ struct Found {
     unseen: BTreeSet<String>,
     /// The places of errors.
     wrong: Vec<String>,
+    /// Whether surfaces may cover a part of what is behind them.
+    covers_in_part: bool,
 }
 
 /// Reads the material files that an OBJ names in the given lines, and sets the appearances of the model's materials.
 pub fn furnish(model: &mut Model, libraries: &[(Vec<u8>, usize)], folder: &Path, budget: &MemoryBudget) {
-    let mut found = Found::default();
+    let mut found = Found { covers_in_part: budget.wanted.covers_in_part(), ..Found::default() };
     let (mut textures, mut missing) = (Textures::new(folder, budget), Vec::new());
     for (names, line) in libraries {
         for name in named(names, folder) {
@@ -140,6 +142,8 @@ struct Raw {
     /// The opacity that `d` gives, and the transparency that `Tr` gives.
     opacity: Option<f64>,
     transparency: Option<f64>,
+    /// The image of the opacity.
+    opacities: Option<Map>,
     illumination: f64,
     mirror: Option<Rgb>,
     shininess: f64,
@@ -187,7 +191,7 @@ impl Found {
     /// Adds a material. Of several with the same name, the first counts.
     fn add(&mut self, material: Option<(String, Raw)>) {
         let Some((name, raw)) = material else { return };
-        let finish = raw.finish(&mut self.unseen);
+        let finish = raw.finish(self.covers_in_part, &mut self.unseen);
         self.finishes.entry(name).or_insert(finish);
     }
 }
@@ -222,7 +226,7 @@ impl Raw {
             "map_Kd" => finish.colours = map(words, place, textures)?.map(|(map, _)| map),
             "map_Ke" => finish.emissions = map(words, place, textures)?.map(|(map, _)| map),
             "map_d" => {
-                finish.mask = map(words, place, textures)?.and_then(|(map, _)| Mask::new(Some(map), CUTOFF));
+                self.opacities = map(words, place, textures)?.map(|(map, _)| map);
             }
             "map_Bump" | "map_bump" | "bump" | "norm" => {
                 let bumps = map(words, place, textures)?;
@@ -239,9 +243,9 @@ impl Raw {
     }
 
     /// Returns the appearance of the material, and adds properties that are not rendered to `unseen`.
-    fn finish(self, unseen: &mut BTreeSet<String>) -> Finish {
+    fn finish(self, covers_in_part: bool, unseen: &mut BTreeSet<String>) -> Finish {
         let Self { mut finish, opacity, transparency, illumination, mirror, shininess, .. } = self;
-        let Self { roughness, metal, has_index, .. } = self;
+        let Self { roughness, metal, has_index, opacities, .. } = self;
         if finish.colours.is_some() && finish.colour == Rgb::ZERO {
             // Some programs write black if an image gives the colours.
             finish.colour = Rgb::ONE;
@@ -263,11 +267,19 @@ impl Raw {
                 "Ks and Ns (highlights without mirror images)",
             ),
         }
-        finish.transparency = opacity.map_or(transparency.unwrap_or(0.0), |opacity| 1.0 - opacity);
+        let passed = opacity.map_or(transparency.unwrap_or(0.0), |opacity| 1.0 - opacity);
         // 3ds Max writes 1 for both of an opaque material.
-        let is_other = |transparency: f64| (transparency - finish.transparency).abs() > 1e-3;
+        let is_other = |transparency: f64| (transparency - passed).abs() > 1e-3;
         hide(transparency.is_some_and(is_other), "Tr (`d` says otherwise)");
-        hide(has_index && finish.transparency > 0.0, "Ni");
+        hide(has_index && passed > 0.0, "Ni");
+        finish.opacity = match covers_in_part {
+            true => Opacity::new(opacities, 1.0 - passed, None),
+            false => {
+                // The notes' rules know no coverage, but glass.
+                finish.transparency = passed;
+                opacities.and_then(|map| Opacity::new(Some(map), 1.0, Some(CUTOFF)))
+            }
+        };
         finish
     }
 }

@@ -137,14 +137,18 @@ const NO_COLOUR: [f32; 3] = [f32::NAN; 3];
 
 /// Converts the colours of vertices to light, like the bytes of an image. Colours are from 0 to 1 or, if any number is
 /// above 1, from 0 to 255. A vertex without a colour is white.
-fn lights(mut colours: Vec<[f32; 3]>, display: Display) -> Vec<[f32; 3]> {
+fn lights(colours: Vec<[f32; 3]>, display: Display) -> Vec<[f32; 4]> {
     let greatest = colours.iter().flatten().fold(0.0, |most: f32, channel| most.max(*channel));
     let bytes = if greatest > 1.0 { 1.0 } else { 255.0 };
-    for channel in colours.iter_mut().flatten() {
-        let byte = if channel.is_nan() { 255.0 } else { (bytes * *channel).round() };
-        *channel = display.light_of(byte as u8) as f32;
-    }
+    let light = |channel: f32| {
+        let byte = if channel.is_nan() { 255.0 } else { (bytes * channel).round() };
+        display.light_of(byte as u8) as f32
+    };
     colours
+        .into_iter()
+        .map(|colour| colour.map(light))
+        .map(|[red, green, blue]| [red, green, blue, 1.0])
+        .collect()
 }
 
 /// Returns the reason why a file has no faces.

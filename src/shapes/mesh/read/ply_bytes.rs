@@ -30,7 +30,7 @@ pub(super) fn read<const BIG: bool>(
                 let Attributes { normals, uv: at, colours } = &mut model.attributes;
                 model.vertices = vec![DVec3::ZERO; section.count];
                 normals.values = vec![[0.0; 3]; has_normals];
-                colours.values = vec![[0.0; 3]; has_colours];
+                colours.values = vec![[0.0; 4]; has_colours];
                 at.values = vec![[0.0; 2]; has_uv];
                 parallel::fill(&mut model.vertices, |index| coordinates(&read(index)));
                 parallel::fill(&mut normals.values, |index| normal(&read(index)));

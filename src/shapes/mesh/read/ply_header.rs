@@ -29,6 +29,7 @@ const NUMBERS: [&[&str]; NUMBERS_OF_VERTEX] = [
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
     &["texnumber", "texture_id"],
+    &["alpha", "diffuse_alpha"],
 ];
 
 /// The ranges of a vertex's coordinates, normal, colour and texture coordinates among its numbers.
@@ -40,11 +41,14 @@ const UV: Range<usize> = 9..11;
 /// The place of the number of a face's image.
 const IMAGE: usize = 11;
 
+/// The place of the fraction that a vertex covers of what is behind it.
+const ALPHA: usize = 12;
+
 /// The maximum light of a colour. Products of larger ones may overflow.
 const MAX_LIGHT: f64 = 1e6;
 
 /// The number of numbers that are read of a vertex or a face.
-const NUMBERS_OF_VERTEX: usize = 12;
+const NUMBERS_OF_VERTEX: usize = 13;
 
 /// The numbers of a vertex or a face.
 pub(super) type Vertex = [f64; NUMBERS_OF_VERTEX];
@@ -270,6 +274,7 @@ impl Section {
                 COORDINATES.contains(place)
                     || NORMAL.contains(place) && self.wanted.normals
                     || (COLOUR.contains(place) || UV.contains(place)) && has_looks
+                    || *place == ALPHA && self.wanted.covers_in_part()
             }
             Kind::Face => (COLOUR.contains(place) || *place == IMAGE) && has_looks,
             Kind::Strips | Kind::Other => false,
@@ -321,15 +326,22 @@ impl Section {
         [NORMAL, COLOUR, UV].map(|numbers| self.has(numbers))
     }
 
-    /// Returns the colour of a vertex. Integers are levels of an image, and other numbers are light.
-    pub fn colour(&self, vertex: &Vertex) -> [f32; 3] {
-        let number = self.fields.iter().find_map(|field| match field {
-            Field::Vertex(place, number) if *place == COLOUR.start => Some(*number),
+    /// Returns the type of a number of vertices, if they have it.
+    fn number(&self, of: usize) -> Option<Number> {
+        self.fields.iter().find_map(|field| match field {
+            Field::Vertex(place, number) if *place == of => Some(*number),
             _ => None,
-        });
-        let greatest = number.and_then(Number::greatest);
+        })
+    }
+
+    /// Returns the colour of a vertex, and the fraction that it covers. Integers are levels of an image, and other
+    /// numbers are light.
+    pub fn colour(&self, vertex: &Vertex) -> [f32; 4] {
+        let greatest = self.number(COLOUR.start).and_then(Number::greatest);
         let colour = [0, 1, 2].map(|channel| vertex[COLOUR.start + channel]);
-        colour.map(|channel| match (greatest, self.wanted.materials) {
+        let covered = |number: Number| vertex[ALPHA] / number.greatest().unwrap_or(1.0);
+        let covered = self.number(ALPHA).map_or(1.0, covered);
+        let [red, green, blue] = colour.map(|channel| match (greatest, self.wanted.materials) {
             (Some(greatest), Some(display)) => {
                 display.light_of((255.0 * channel / greatest).round() as u8) as f32
             }
@@ -340,7 +352,8 @@ impl Section {
                     0.0
                 }
             }
-        })
+        });
+        [red, green, blue, if covered >= 0.0 { covered.min(1.0) as f32 } else { 0.0 }]
     }
 
     /// Adds a vertex, with the attributes that are read.

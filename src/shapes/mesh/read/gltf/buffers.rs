@@ -72,6 +72,8 @@ impl Kind {
 /// The elements of an accessor.
 pub struct Elements<'b> {
     pub count: usize,
+    /// The number of numbers of an element.
+    pub width: usize,
     kind: Kind,
     is_normalized: bool,
     /// The bytes from the first element on. Missing bytes stand for numbers that are 0.
@@ -205,7 +207,7 @@ impl<'f> Buffers<'f> {
                 others.insert(place, value);
             }
         }
-        Ok(Elements { count: *count, kind, is_normalized: *normalized, bytes, stride, others })
+        Ok(Elements { count: *count, width, kind, is_normalized: *normalized, bytes, stride, others })
     }
 }
 

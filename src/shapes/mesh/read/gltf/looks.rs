@@ -2,7 +2,7 @@
 
 use super::buffers::{Buffers, data, unescaped};
 use super::json::{self, Gltf, SpecularGlossiness, Transform};
-use crate::mesh::read::finish::{Finish, Map, Mask};
+use crate::mesh::read::finish::{Finish, Map, Opacity};
 use crate::mesh::read::model::{MemoryBudget, Model, Remark};
 use crate::mesh::read::textures::{Textures, first_of};
 use glam::{DVec2, DVec3};
@@ -53,6 +53,7 @@ pub fn furnish(
         unseen: BTreeSet::new(),
         images: Vec::new(),
         repeats: model.attributes.uv.values.iter().flatten().any(|at| !(0.0..=1.0).contains(at)),
+        covers_in_part: budget.wanted.covers_in_part(),
     };
     looks.images.resize(json.images.len(), None);
     for material in &json.materials {
@@ -81,6 +82,8 @@ struct Looks<'f> {
     images: Vec<Option<Option<Arc<Texture>>>>,
     /// Whether texture coordinates lie beyond the edges of an image.
     repeats: bool,
+    /// Whether surfaces may cover a part of what is behind them.
+    covers_in_part: bool,
 }
 
 impl Looks<'_> {
@@ -97,8 +100,6 @@ impl Looks<'_> {
                 self.unseen.insert(what.to_owned());
             }
         };
-        let mode = material.alpha_mode.as_deref().unwrap_or("OPAQUE");
-        hide(mode == "BLEND" && base_color_texture.is_some(), "the alpha of images");
         hide(material.occlusion_texture.is_some(), "occlusionTexture");
         let extension = |name: &str, number: &str| material.extensions.get(name)?.get(number)?.as_f64();
         for name in material.extensions.keys().filter(|name| !SHOWN.contains(&&name[..])) {
@@ -109,11 +110,10 @@ impl Looks<'_> {
         let strength = extension("KHR_materials_emissive_strength", "emissiveStrength").unwrap_or(1.0);
         let [r, g, b] = material.emissive_factor.map(|channel| channel * strength);
         let passed = extension("KHR_materials_transmission", "transmissionFactor").unwrap_or(0.0);
-        let covered = if mode == "BLEND" { alpha.clamp(0.0, 1.0) } else { 1.0 };
         let mut finish = Finish {
             colour: colour(*red, *green, *blue),
             emission: colour(r, g, b),
-            transparency: 1.0 - covered * (1.0 - passed.clamp(0.0, 1.0)),
+            transparency: passed.clamp(0.0, 1.0),
             colours: self.map(base_color_texture.as_ref())?,
             emissions: self.map(material.emissive_texture.as_ref())?,
             ..Finish::default()
@@ -121,10 +121,7 @@ impl Looks<'_> {
         let normals = self.map(material.normal_texture.as_ref())?;
         let slopes = material.normal_texture.as_ref().and_then(|normals| normals.scale).unwrap_or(1.0);
         finish.normals = normals.map(|map| (map, slopes));
-        if mode == "MASK" {
-            let map = finish.colours.clone().filter(|map| map.texture.has_alpha());
-            finish.mask = Mask::new(map, material.alpha_cutoff.unwrap_or(CUTOFF) / alpha);
-        }
+        self.set_opacity(&mut finish, material, *alpha);
         let (mut metal, mut roughness) = (*metallic_factor, *roughness_factor);
         if let Some(map) = self.map(metallic_roughness_texture.as_ref())? {
             let DVec3 { y, z, .. } = mean(&map.texture);
@@ -135,9 +132,25 @@ impl Looks<'_> {
         if let Some(other) = material.extensions.get(SPECULAR_GLOSSINESS) {
             let other = SpecularGlossiness::deserialize(other)
                 .map_err(|error| format!("one of its materials is not glTF: {error}"))?;
-            self.by_specular_glossiness(&mut finish, &other, mode)?;
+            self.by_specular_glossiness(&mut finish, &other)?;
+            self.set_opacity(&mut finish, material, other.diffuse_factor[3]);
         }
         Ok(finish)
+    }
+
+    /// Sets how opaque a material is, by the alpha of its images times this factor.
+    fn set_opacity(&mut self, finish: &mut Finish, material: &json::Material, factor: f64) {
+        let map = finish.colours.clone().filter(|map| map.texture.has_alpha());
+        finish.opacity = match material.alpha_mode.as_deref() {
+            Some("MASK") => Opacity::new(map, 1.0, Some(material.alpha_cutoff.unwrap_or(CUTOFF) / factor)),
+            Some("BLEND") if self.covers_in_part => Opacity::new(map, factor, None),
+            Some("BLEND") => {
+                // The notes' rules know no coverage, but glass.
+                finish.transparency = 1.0 - factor.clamp(0.0, 1.0) * (1.0 - finish.transparency);
+                Opacity::new(map, 1.0, Some(CUTOFF))
+            }
+            _ => None,
+        };
     }
 
     /// Sets what a material of the extension says instead: where its specular colour is brighter than that of what is no
@@ -146,9 +159,8 @@ impl Looks<'_> {
         &mut self,
         finish: &mut Finish,
         material: &SpecularGlossiness,
-        mode: &str,
     ) -> Result<(), String> {
-        let [red, green, blue, alpha] = material.diffuse_factor;
+        let [red, green, blue, _] = material.diffuse_factor;
         let specular = DVec3::from(material.specular_factor).clamp(DVec3::ZERO, DVec3::ONE);
         let brightness = specular.max_element();
         let metal = ((brightness - DIELECTRIC) / (1.0 - DIELECTRIC)).max(0.0);
@@ -163,13 +175,6 @@ impl Looks<'_> {
             None => (metal, diffuse.lerp(specular, metal)),
         };
         finish.colour = colour;
-        if mode == "BLEND" {
-            finish.transparency = 1.0 - alpha.clamp(0.0, 1.0);
-        }
-        if mode == "MASK" {
-            let map = finish.colours.clone().filter(|map| map.texture.has_alpha());
-            finish.mask = Mask::new(map, CUTOFF / alpha);
-        }
         finish.forge(metal, 1.0 - material.glossiness_factor);
         Ok(())
     }

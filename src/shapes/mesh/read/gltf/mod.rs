@@ -343,8 +343,14 @@ impl Reading<'_> {
         add(&mut attributes.uv, wanted.materials.is_some(), &faces, uv, |[u, v]: [f64; 2]| {
             [u as f32, (1.0 - v) as f32]
         });
-        let colour = |colour: [f64; 3]| {
-            colour.map(|channel| if channel > 0.0 { channel.min(1e6) as f32 } else { 0.0 })
+        let blends =
+            |index: usize| json.materials.get(index)?.alpha_mode.as_deref().map(|mode| mode == "BLEND");
+        let covers_in_part = wanted.covers_in_part() && primitive.material.and_then(blends) == Some(true);
+        let has_alpha = covers_in_part && colours.as_ref().is_some_and(|colours| colours.width == 4);
+        let colour = |[red, green, blue, alpha]: [f64; 4]| {
+            let [red, green, blue] =
+                [red, green, blue].map(|channel| if channel > 0.0 { channel.min(1e6) as f32 } else { 0.0 });
+            [red, green, blue, if has_alpha { alpha.clamp(0.0, 1.0) as f32 } else { 1.0 }]
         };
         add(&mut attributes.colours, wanted.materials.is_some(), &faces, colours, colour);
         let slot = match primitive.material {

@@ -96,7 +96,7 @@ fn vertices_of_a_ply_have_normals_colours_and_texture_coordinates() {
         assert_eq!(attributes.normals.values[2], [2.0, 0.0, 0.0]);
         assert!(attributes.normals.values[1][2].is_nan());
         // Bytes are decoded as in the notes.
-        assert_eq!(attributes.colours.values[0], [255.0 / 256.0, 0.0, 0.25]);
+        assert_eq!(attributes.colours.values[0], [255.0 / 256.0, 0.0, 0.25, 1.0]);
         assert_eq!(attributes.uv.values, [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]);
     }
 }
