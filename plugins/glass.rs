@@ -60,11 +60,15 @@ inventory::submit! {
     .known_as(&["dielectric"])
 }
 
+/// The interface of glass.
 #[derive(PartialEq)]
-struct Glass {
-    index: f64,
-    medium: Option<Medium>,
-    roughness: f64,
+pub struct Glass {
+    /// The refractive index inside, relative to outside.
+    pub index: f64,
+    /// The medium that absorbs light inside.
+    pub medium: Option<Medium>,
+    /// How rough the surface is, from 0 to 1.
+    pub roughness: f64,
 }
 
 impl Interface for Glass {

@@ -1,10 +1,14 @@
 //! A mesh of triangles from a file.
 
+use super::glass::Glass;
+use super::metal::Metal;
+use super::plastic::Plastic;
 use std::path::PathBuf;
 use std::sync::Arc;
 use tabray::prelude::*;
-use tabray::shapes::mesh::read::{self, Wanted};
-use tabray::shapes::mesh::{Finished, Look, Mesh, Painted, Surface, ToWorld};
+use tabray::shapes::mesh::read::{self, Polish, Wanted};
+use tabray::shapes::mesh::{self, Finished, Look, Mesh, Painted, Sort, Surface, ToWorld};
+use tabray::world::coat::fresnel;
 
 static FILE: Pparm<PathBuf> =
     Pparm::required("file", "an OBJ, PLY, STL or glTF file, relative to the scene's folder");
@@ -39,34 +43,100 @@ const TABLE: Table =
 inventory::submit! {
     Entity::shape("mesh", "a surface of triangles from a file", &[TABLE], |args| {
         let surface = Arc::new(surface(args)?);
-        let shape = match args.accuracy() {
-            Accuracy::Strict => AnyShape::of_packets(Mesh::<Strict>::new(surface.clone(), args.accuracy())),
-            _ => AnyShape::of_packets(Mesh::<Exact>::new(surface.clone(), args.accuracy())),
-        };
         let told = |remark: &read::Remark| Warning {
             attribute: "file",
             message: remark.message.clone(),
             help: remark.help.to_owned(),
         };
         let mut warnings: Vec<_> = surface.remarks.iter().map(told).collect();
+        let (own, accuracy) = (args.material(), args.accuracy());
         let body = if surface.has_looks() {
             let finished = Finished::new(surface.clone());
-            let (material, warning) = finished.material(&args.material());
-            warnings.extend(warning);
-            Body { material: material.map(Arc::new), ..Body::shaded(shape, finished) }
+            // Where all is glass or metal, the file's materials give its colours alone.
+            let sorts = match own.interface {
+                None => mesh::sorts(&surface, |slot| finished.material(slot, &own, polish(args))),
+                Some(_) => Ok(Vec::new()),
+            };
+            sorted(args, &surface, sorts, &mut warnings, Finished::new)
         } else if surface.materials.is_empty() || args.setting.only_rays || args.get(&MATERIALS) == Materials::File {
-            Body::plain(shape)
+            Body::plain(shape(&surface, accuracy))
         } else {
-            let materials = surface.materials.iter().map(|name| args.setting.materials.get(name).cloned()).collect();
-            let painted = Painted { surface: surface.clone(), materials };
+            let materials: Vec<_> =
+                surface.materials.iter().map(|name| args.setting.materials.get(name).cloned()).collect();
+            let paint = |surface| Painted { surface, materials: materials.clone() };
+            let painted = paint(surface.clone());
             warnings.extend(painted.unknown_materials(&args.setting.materials));
-            warnings.extend(painted.unlike_materials(&args.material()));
-            Body::shaded(shape, painted)
+            let sorts = mesh::sorts(&surface, |slot| painted.material_of(slot, &own));
+            sorted(args, &surface, sorts, &mut warnings, paint)
         };
-        let (files, bytes, accuracy) = (surface.files.clone(), surface.bytes(), args.accuracy());
+        let (files, bytes) = (surface.files.clone(), surface.bytes());
         Ok(Body { warnings, files, bytes, boundary: Some(Box::new(move || surface.boundary(accuracy))), ..body })
     })
     .known_as(&["obj", "stl", "ply", "gltf", "glb", "model", "trimesh"])
+}
+
+/// Makes the shape of a surface.
+fn shape(surface: &Arc<Surface>, accuracy: Accuracy) -> AnyShape {
+    match accuracy {
+        Accuracy::Strict => AnyShape::of_packets(Mesh::<Strict>::new(surface.clone(), accuracy)),
+        _ => AnyShape::of_packets(Mesh::<Exact>::new(surface.clone(), accuracy)),
+    }
+}
+
+/// Makes the body of a surface, with the faces of each sort of materials. `shader` makes the shader of a part of the
+/// surface.
+fn sorted<S: Shader + 'static>(
+    args: &Args,
+    surface: &Arc<Surface>,
+    sorts: Result<Vec<Sort>, Warning>,
+    warnings: &mut Vec<Warning>,
+    shader: impl Fn(Arc<Surface>) -> S,
+) -> Body {
+    let accuracy = args.accuracy();
+    let body = Body::shaded(shape(surface, accuracy), shader(surface.clone()));
+    let mut sorts = sorts.unwrap_or_else(|warning| {
+        warnings.push(warning);
+        Vec::new()
+    });
+    match sorts.len() {
+        0 => return body,
+        1 => {
+            let material = sorts.pop().map(|sort| Arc::new(sort.material));
+            return Body { material: material.filter(|material| *material != args.material()), ..body };
+        }
+        _ if args.setting.only_rays => return body,
+        _ => {}
+    }
+    let face = |Sort { material, slots }: Sort| {
+        let surface = Arc::new(surface.part(|slot| slots.contains(&slot))?);
+        let of_face = surface.clone();
+        Some(Arc::new(Body {
+            material: Some(Arc::new(material)),
+            boundary: Some(Box::new(move || of_face.boundary(accuracy))),
+            ..Body::shaded(shape(&surface, accuracy), shader(surface))
+        }))
+    };
+    Body { faces: sorts.into_iter().filter_map(face).collect(), ..body }
+}
+
+/// Returns the function that gives a material the polish of a file.
+fn polish(args: &Args) -> impl Fn(Material, &Polish) -> Material {
+    // Lengths in the units of the file grow with the mesh.
+    let size = args.get(&SCALE).abs().element_product().cbrt();
+    move |material, polish| {
+        let (interface, specular) = match *polish {
+            Polish::Glass { index, roughness, left, at } => {
+                let medium = Medium::new(left, size * at);
+                (AnyInterface::new(Glass { index, medium, roughness }), material.specular)
+            }
+            Polish::Metal { colour, roughness } => (AnyInterface::new(Metal { colour, roughness }), colour),
+            Polish::Coat { index, roughness } => {
+                let coat = Plastic::new(index, roughness);
+                (AnyInterface::new(coat), Rgb::splat(fresnel(index, 1.0)))
+            }
+        };
+        Material { interface: Some(interface), specular, ..material }
+    }
 }
 
 /// Whose normals a mesh is shaded with.

@@ -35,10 +35,13 @@ inventory::submit! {
     .known_as(&["conductor"])
 }
 
+/// The interface of metal.
 #[derive(PartialEq)]
-struct Metal {
-    colour: Rgb,
-    roughness: f64,
+pub struct Metal {
+    /// The fraction of the light along the normal that is reflected.
+    pub colour: Rgb,
+    /// How rough the surface is, from 0 to 1.
+    pub roughness: f64,
 }
 
 impl Interface for Metal {

@@ -23,24 +23,31 @@ const TABLE: Table = &[&BODY, &INDEX, &ROUGHNESS, &SHININESS, &EMISSION];
 inventory::submit! {
     Entity::material("plastic", "a matt body under a clear coat, as of plastic, lacquer and glaze", &[TABLE], |args| {
         let (index, roughness) = (args.get(&INDEX), args.get(&ROUGHNESS));
-        let coat = Coat::new(index, roughness);
         Ok(Material {
             diffuse: args.get(&BODY),
             emission: args.get(&EMISSION),
             specular: Rgb::splat(fresnel(index, 1.0)),
             shininess: args.get(&SHININESS),
-            interface: Some(AnyInterface::new(Plastic { index, roughness, coat })),
+            interface: Some(AnyInterface::new(Plastic::new(index, roughness))),
             ..Material::default()
         })
     })
     .known_as(&["lacquer", "glaze", "roughplastic"])
 }
 
+/// The interface of a matt body under a clear coat.
 #[derive(PartialEq)]
-struct Plastic {
+pub struct Plastic {
     index: f64,
     roughness: f64,
     coat: Coat,
+}
+
+impl Plastic {
+    /// Makes a coat of a refractive index from 1 to 4, with a roughness from 0 to 1.
+    pub fn new(index: f64, roughness: f64) -> Self {
+        Self { index, roughness, coat: Coat::new(index, roughness) }
+    }
 }
 
 impl Interface for Plastic {

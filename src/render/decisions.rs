@@ -151,9 +151,14 @@ fn shadows(plan: &Plan) -> String {
 }
 
 fn glass(plan: &Plan) -> String {
-    match some(kept(plan).filter(|(_, object)| object.material.transparency != 0.0).map(named)) {
-        names if names.is_empty() => "none: no object is transparent, and no rays are transmitted".to_owned(),
-        names => format!("{names}: each ray that hits one is transmitted"),
+    let glass = some(kept(plan).filter(|(_, object)| object.material.transparency != 0.0).map(named));
+    let thin = some(kept(plan).filter(|(_, object)| object.shader.covers_in_part()).map(named));
+    let glass = (!glass.is_empty()).then(|| format!("{glass}: each ray that hits one is transmitted"));
+    let thin = (!thin.is_empty()).then(|| format!("{thin}: rays pass through what it does not cover"));
+    match (glass, thin) {
+        (None, None) => "none: no object is transparent, and no rays are transmitted".to_owned(),
+        (Some(glass), Some(thin)) => format!("{glass}; {thin}"),
+        (one, other) => one.or(other).unwrap_or_default(),
     }
 }
 

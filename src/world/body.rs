@@ -9,6 +9,7 @@ use crate::shader::{Anchor, Plain, Shader};
 use crate::solid::{Operation, Tree};
 use glam::DVec3;
 use std::fmt;
+use std::mem::take;
 use std::path::PathBuf;
 use std::sync::{Arc, LazyLock, OnceLock};
 
@@ -122,6 +123,9 @@ pub struct Body {
     pub solid: Option<Box<Solid>>,
     /// Further bodies that are seen together with this one.
     pub more: Vec<Body>,
+    /// The parts of its surface with different materials, which are seen in place of the whole; empty where one material
+    /// does for all. Solids are made of the whole.
+    pub faces: Vec<Arc<Body>>,
     /// Whether it keeps its own look when the object that it is seen with is given a shader.
     pub keeps_look: bool,
 }
@@ -202,6 +206,7 @@ impl Body {
             material: None,
             solid: None,
             more: Vec::new(),
+            faces: Vec::new(),
             keeps_look: false,
         }
     }
@@ -231,6 +236,7 @@ impl Body {
     pub fn painted(mut self, paint: &ShaderFactory) -> Self {
         let painted = |one: Self| if one.keeps_look { one } else { one.painted(paint) };
         self.more = self.more.into_iter().map(painted).collect();
+        self.each_face(|face| face.painted(paint));
         let shader = paint.on(self.anchor());
         let shader = match &self.to_object_space {
             Some(to_object_space) => to_object_space(shader),
@@ -241,11 +247,18 @@ impl Body {
         body
     }
 
+    /// Changes the parts of the surface with different materials, which no other body has.
+    fn each_face(&mut self, change: impl Fn(Self) -> Self) {
+        let changed = |face: Arc<Self>| Arc::into_inner(face).map(|face| Arc::new(change(face)));
+        self.faces = take(&mut self.faces).into_iter().filter_map(changed).collect();
+    }
+
     /// Removes the parts of the shape that the shader cuts out.
-    pub fn cut_out(self) -> Self {
+    pub fn cut_out(mut self) -> Self {
         if self.more.is_empty() && !self.shader.cuts_out() {
             return self;
         }
+        self.each_face(Self::cut_out);
         let more = self.more.into_iter().map(Self::cut_out).collect();
         if !self.shader.cuts_out() {
             return Self { more, ..self };

@@ -115,9 +115,9 @@ fn all_forms_of_rays_and_answers_say_the_same() {
     assert_eq!((status, err.as_str()), (0, ""));
     assert_eq!(
         out,
-        "verdict,proof,object,number,face,t,t_low,t_high,distance,x,y,z,nx,ny,nz,u,v,surface\n\
-         hit,53 bits,ball,0,,6,5.999999999999948,6.000000000000056,6,4,3,0,0.8,0.6000000000000001,0,0.75,0.7048327646991336,0\n\
-         miss,53 bits,,,,,,,,,,,,,,,,\n"
+        "verdict,proof,object,number,face,t,t_low,t_high,distance,x,y,z,nx,ny,nz,u,v,surface,coverage\n\
+         hit,53 bits,ball,0,,6,5.999999999999948,6.000000000000056,6,4,3,0,0.8,0.6000000000000001,0,0.75,0.7048327646991336,0,\n\
+         miss,53 bits,,,,,,,,,,,,,,,,,\n"
     );
     let (status, _, err) = asked(&folder, &["balls.ray", "rays.npy", "-o", "answers.npy"], "");
     assert_eq!((status, err.as_str()), (0, ""));
@@ -127,7 +127,7 @@ fn all_forms_of_rays_and_answers_say_the_same() {
     assert!(head.contains("('t_low', '<f8')") && head.contains("'shape': (2,)"), "{head}");
     assert_eq!(array[length], 1, "the first is a hit");
     let record = (array.len() - length) / 2;
-    assert_eq!((record, array[length + record]), (1 + 1 + 4 + 4 + 4 * 8 + 8 * 8 + 4, 0));
+    assert_eq!((record, array[length + record]), (1 + 1 + 4 + 4 + 4 * 8 + 8 * 8 + 4 + 8, 0));
 }
 
 #[test]

@@ -54,8 +54,10 @@ fn rays_pass_where_an_image_cuts_a_surface_out() {
         let room = ROOM.replace("angle 45", &format!("angle 45 rules {rules}"));
         render(&model_in(folder.path(), &format!("{room}{object}")))
     };
-    let left = ["free", "notes"].map(|rules| by(rules, "mesh m { material white file quarters.obj sides one }"));
-    let whole = ["free", "notes"].map(|rules| by(rules, "mesh m { material white file square.obj sides one }"));
+    let left =
+        ["free", "notes"].map(|rules| by(rules, "mesh m { material white file quarters.obj sides one }"));
+    let whole =
+        ["free", "notes"].map(|rules| by(rules, "mesh m { material white file square.obj sides one }"));
     assert!(left[0] != whole[0] && left[1] != whole[1]);
     let plane = "material white normal 0 0 1 point -1 0.125 0 xdir 1 0 0 dimensions 2 2";
     for cut in [

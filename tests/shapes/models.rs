@@ -1,6 +1,6 @@
 //! Models with their own materials, images, normals and colours.
 
-use crate::common::registry;
+use crate::common::{model_in, registry, render};
 use image::{Rgb, RgbImage};
 use std::fs;
 use std::path::Path;
@@ -57,8 +57,9 @@ fn read_with(folder: &Path, before: &str, mesh: &str) -> (Model, String) {
 
 /// Returns the ambient, the diffuse and the mirrored colour at a point.
 fn look(model: &Model, at: [f64; 3]) -> [[f64; 3]; 3] {
-    let object = &model.objects[0];
-    let at = object.surface_point(DVec3::from(at), Side::Outside);
+    let at = DVec3::from(at);
+    let object = model.objects.iter().find(|object| object.shape.is_on_surface(at, 1e-9)).expect("a face");
+    let at = object.surface_point(at, Side::Outside);
     let of = [object.shader.ambient(&object.material, &at), object.shader.diffuse(&object.material, &at)];
     [of[0], of[1], object.shader.specular(&object.material, &at)].map(|colour| colour.to_array())
 }
@@ -101,16 +102,76 @@ fn an_obj_has_the_materials_and_images_of_its_material_file() {
     }
     is_near(&model, [6.5, 2.0, 0.0], [[0.25, 0.25, 0.375], [0.25, 0.5, 0.75], [0.5, 0.25, 0.0]]);
     assert!(!warnings.contains("names material"), "{warnings}");
-    assert!(warnings.contains("not shown: Ks and Ns (highlights without mirror images)"), "{warnings}");
-    assert!(
-        warnings.contains("ignores the shininess and transparency of its file's materials: `plain`"),
-        "{warnings}"
-    );
+    assert!(!warnings.contains("not shown"), "{warnings}");
+    // Without mirror images, `Ks` is the strength of highlights alone.
+    let highlights = model.objects.iter().map(|object| (object.material.highlight, object.material.shininess));
+    let highlights: Vec<_> = highlights.collect();
+    assert_eq!(highlights, [(DVec3::splat(0.5), 90.0), (DVec3::ZERO, 90.0)]);
     nothing_is_contradicted(&model);
     // A shader of the scene sees the texture coordinates of the file.
     let paint = "texture t { filename \"images/two colours.png\" } image paint { texture t }";
     let (model, _) = read_with(folder.path(), paint, "file wall.obj materials file shader paint");
     assert_eq!(look(&model, [2.5, 3.0, 0.0])[1], [0.0625, 0.0, 0.0]);
+}
+
+/// Two cubes, with a material each.
+fn cubes(one: &str, other: &str) -> String {
+    let corners = |left: f64| {
+        let corner = |at: usize| {
+            let [x, y, z] = [at & 1, at >> 1 & 1, at >> 2].map(|side| side as f64);
+            format!("v {} {y} {z}\n", left + x)
+        };
+        (0..8).map(corner).collect::<String>()
+    };
+    let faces = |first: usize| {
+        let face = |face: &[usize; 4]| {
+            let [a, b, c, d] = face.map(|corner| first + corner);
+            format!("f {a} {b} {c} {d}\n")
+        };
+        [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]]
+            .iter()
+            .map(face)
+            .collect::<String>()
+    };
+    format!("{}{}usemtl {one}\n{}usemtl {other}\n{}", corners(0.0), corners(1.5), faces(0), faces(8))
+}
+
+#[test]
+fn faces_of_two_materials_are_seen_as_two_meshes() {
+    let (looks, both) = ("mtllib looks.mtl\n", cubes("red", "clear"));
+    let (one, other) = both.split_once("usemtl clear").expect("two");
+    let (corners, _) = one.split_once("usemtl").expect("a material");
+    let folder = folder(&[
+        ("both.obj", &both),
+        ("one.obj", one),
+        ("other.obj", &format!("{corners}usemtl clear{other}")),
+        ("files.obj", &format!("{looks}{both}")),
+        ("red.obj", &format!("{looks}{}", cubes("red", "none"))),
+        ("clear.obj", &format!("{looks}{}", cubes("none", "clear"))),
+        ("looks.mtl", "newmtl red\nKd 0.8 0.2 0.1\nillum 3\nKs 0.2 0.2 0.2\nnewmtl clear\nKd 0.4 0.9 0.5\nd 0.3\n\
+          newmtl none\nd 0\n"),
+    ]);
+    let picture = |objects: &str| {
+        render(&model_in(
+            folder.path(),
+            &format!(
+                "look_at eye {{ pixeldim 48 36 position 2 3 6 target 1.2 0.5 0.5 angle 35 samples 2 }}
+                 sky day {{ lights yes }} light lamp {{ location 3 5 4 emissivity 1 1 1 }}
+                 material own {{ diffuse 0.5 0.5 0.5 }} material red {{ diffuse 0.8 0.2 0.1 specular 0.3 }}
+                 glass clear {{ index 1.4 attenuation 0.3 0.8 0.4 at 1 }}
+                 plane floor {{ material own normal 0 1 0 point 0 0 0 }} {objects}"
+            ),
+        ))
+    };
+    // By the names of the scene's materials, as a copy too.
+    let parts = "mesh one { material red file one.obj } mesh two { material clear file other.obj }";
+    let together = picture("mesh both { material own file both.obj }");
+    assert_eq!(together, picture(parts));
+    let far = "mesh both { material own file both.obj translation 5 0 0 } place copy { object both translation -5 0 0 }";
+    assert_eq!(together, picture(far));
+    // By the file's, of which one covers nothing.
+    let of_file = |name: &str| format!("mesh {name} {{ material own file {name}.obj materials file }} ");
+    assert_eq!(picture(&of_file("files")), picture(&(of_file("red") + &of_file("clear"))));
 }
 
 #[test]

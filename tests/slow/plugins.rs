@@ -313,12 +313,17 @@ fn a_fault_in_a_tenth_of_the_pixels_is_noticed_by_render() {
         let args = [&["render", paths[0], "-o", paths[1]][..], options].concat();
         let said = BUILT.says(&args, "");
         let warning = said.lines().find(|line| line.contains("finds another object than the first"));
-        warning.unwrap_or_else(|| panic!("{said}")).to_owned()
+        let warning = warning.unwrap_or_else(|| panic!("{said}"));
+        let numbers: Vec<usize> = warning.split(' ').filter_map(|word| word.parse().ok()).collect();
+        assert!(warning.ends_with(" pixels that were tried") && numbers.len() == 2, "{warning}");
+        [numbers[0], numbers[1]]
     };
+    // A slow machine may not come to try all.
     let once = noticed(&[]);
-    assert!(once.ends_with(" of 64 pixels that were tried"), "{once}");
+    assert!(once[1] <= 64, "{once:?}");
     for options in [["--threads", "1"], ["--part", "2/3"]] {
-        assert_eq!(noticed(&options), once);
+        let [contradicted, tried] = noticed(&options);
+        assert!(tried != once[1] || contradicted == once[0], "{contradicted} of {tried}, {once:?}");
     }
 }
 

@@ -3,7 +3,6 @@
 use super::check::{Check, PIECE, Source, TOGETHER, place_of};
 use super::fault::Fault;
 use std::collections::BTreeMap;
-use std::iter;
 use std::mem::take;
 use std::ops::Range;
 use std::ptr;
@@ -197,7 +196,11 @@ fn only_free(attribute: Option<&'static str>) -> Refusal {
 /// Returns the visible objects of a body, with their own materials or with the material of the record.
 fn objects(record: Record, mut body: Body) -> impl Iterator<Item = Object> {
     let more = take(&mut body.more);
-    iter::once(body).chain(more).filter_map(move |body| {
+    let mut seen: Vec<_> = take(&mut body.faces).into_iter().filter_map(Arc::into_inner).collect();
+    if seen.is_empty() {
+        seen.push(body);
+    }
+    seen.into_iter().chain(more).filter_map(move |body| {
         let material = body.material.clone().or_else(|| record.material())?;
         // Rays continue inside of refracting objects.
         let boundary = material.interface.as_ref().and_then(|_| body.boundary());
@@ -248,6 +251,6 @@ fn constructed(
 /// Returns the result for a body. Most objects take a fraction of its memory.
 fn of(body: Body) -> Constructed {
     let is_all = body.warnings.is_empty() && body.more.is_empty() && body.material.is_none();
-    let is_all = is_all && body.boundary.is_none();
+    let is_all = is_all && body.boundary.is_none() && body.faces.is_empty();
     if is_all { Constructed::Plain(body.shape, body.shader) } else { Constructed::Body(Box::new(body)) }
 }

@@ -675,6 +675,7 @@ def texture(
     *,
     filename: _Words = None,
     cutout: _Truth = None,
+    coverage: _Truth = None,
 ) -> Entity: ...
 
 def thin_lens(

@@ -72,8 +72,8 @@ static COLUMNS: [Column; 16] = [
     Column::both("point", Value::Vector(&["x", "y", "z"], |at| Some(at.point.to_array()))),
     Column::both("normal", Value::Vector(&["nx", "ny", "nz"], |at| Some(at.normal.to_array()))),
     Column::both("uv", Value::Vector(&["u", "v"], |at| at.uv.map(|uv| [uv.x, uv.y, f64::NAN]))),
-    Column::both("coverage", Value::Part(|at| at.coverage)),
     Column::both("surface", Value::Index(|of| Some(of.query.surface(&of.answer)? as u64))),
+    Column::both("coverage", Value::Part(|at| at.coverage)),
 ];
 
 /// The columns that answers have only where a ray may have several. They are the first ones of CSV.

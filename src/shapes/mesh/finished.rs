@@ -1,13 +1,12 @@
 //! Appearances of faces as given by a mesh's file.
 
-use super::read::{Finish, Map, Opacity};
+use super::read::{Finish, Map, Opacity, Polish};
 use super::surface::Surface;
 use crate::uv;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, per_axis};
-use tabray_world::body::Warning;
 use tabray_world::certify::Precise;
 use tabray_world::luminous::{Luminous, Triangles};
 use tabray_world::material::{Look, Material, Rgb};
@@ -57,6 +56,20 @@ impl Finished {
         let cuts_out = used(Opacity::has_holes);
         let covers_in_part = are_thin || used(Opacity::covers_in_part);
         Self { surface, has_images, bends, cuts_out, covers_in_part }
+    }
+
+    /// Returns the material of the faces of a slot, as far as it is the same at all of their points. The mesh itself has
+    /// the material `own`, and `polished` returns a material with a polish.
+    pub fn material(
+        &self,
+        slot: u16,
+        own: &Material,
+        polished: impl Fn(Material, &Polish) -> Material,
+    ) -> Material {
+        let Some(finish) = self.surface.finish(slot) else { return own.clone() };
+        let Finish { shininess, transparency, highlight, .. } = *finish;
+        let material = Material { shininess, transparency, highlight, ..own.clone() };
+        finish.polish.iter().fold(material, polished)
     }
 
     fn spot(&self, at: DVec3) -> Spot<'_> {
@@ -152,37 +165,6 @@ impl Finished {
         })
     }
 
-    /// Returns the material of the mesh, `own`, with the shininess and the transparency that the materials of all faces
-    /// share. Returns a warning if these materials differ, or `own` is of another kind.
-    pub fn material(&self, own: &Material) -> (Option<Material>, Option<Warning>) {
-        let surface = &self.surface;
-        let of = |slot: u16| surface.finish(slot).map_or([own.shininess, own.transparency], Finish::gloss);
-        let mut used = vec![false; surface.materials.len() + 1];
-        surface.slots.iter().for_each(|slot| used[usize::from(*slot)] = true);
-        used[0] |= surface.slots.is_empty();
-        let used: Vec<_> = (0..used.len()).filter(|slot| used[*slot]).map(|slot| slot as u16).collect();
-        let [shininess, transparency] = of(used[0]);
-        let is_plain = own.interface.is_none();
-        if is_plain && used.iter().all(|slot| of(*slot) == [shininess, transparency]) {
-            let is_own = [shininess, transparency] == [own.shininess, own.transparency];
-            return ((!is_own).then(|| Material { shininess, transparency, ..own.clone() }), None);
-        }
-        let unlike = used.iter().filter(|slot| of(**slot) != [own.shininess, own.transparency]);
-        let unlike: Vec<_> =
-            unlike.filter_map(|slot| surface.materials.get(usize::from(*slot).checked_sub(1)?)).collect();
-        let warning = (!unlike.is_empty()).then(|| Warning {
-            attribute: "materials",
-            message: format!(
-                "ignores the shininess and transparency of its file's materials: {}",
-                super::painted::first_of(&unlike)
-            ),
-            help: "they are those of the mesh's own material, as only colours can differ from face to face: make these faces a \
-                   mesh of their own"
-                .to_owned(),
-        });
-        (None, warning)
-    }
-
     /// Encloses the colours of an image for these bounds of barycentric weights on a face.
     fn enclosed<F: Precise>(
         &self,
@@ -204,12 +186,6 @@ impl Finished {
             (low..=high).map(move |at| at.rem_euclid(i64::from(size.max(1))) as u32)
         };
         map.texture.enclose(texels(0), texels(1))
-    }
-}
-
-impl Finish {
-    fn gloss(&self) -> [f64; 2] {
-        [self.shininess, self.transparency]
     }
 }
 

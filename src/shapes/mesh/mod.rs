@@ -33,6 +33,7 @@ mod search;
 mod shape;
 mod smooth;
 mod solid;
+mod sorts;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -44,6 +45,7 @@ pub use arrays::ArrayError;
 pub use finished::Finished;
 pub use painted::Painted;
 pub use shape::Mesh;
+pub use sorts::{Sort, sorts};
 pub use surface::{Look, Surface, SurfaceError};
 pub use to_world::ToWorld;
 pub use winding::Openness;

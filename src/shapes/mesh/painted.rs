@@ -56,32 +56,16 @@ impl Painted {
         })
     }
 
-    /// Warns of materials whose shininess or transparency differs from that of the mesh's material, `own`, which
-    /// applies to all faces.
-    pub fn unlike_materials(&self, own: &Material) -> Option<Warning> {
-        let is_unlike = |material: &Material| {
-            material.shininess != own.shininess || material.transparency != own.transparency
-        };
-        let named = self.surface.materials.iter().zip(&self.materials);
-        let unlike: Vec<_> = named
-            .filter(|(_, material)| material.as_deref().is_some_and(is_unlike))
-            .map(|(name, _)| name)
-            .collect();
-        (!unlike.is_empty()).then(|| Warning {
-            attribute: "material",
-            message: format!(
-                "ignores the shininess and transparency of its faces' materials: {}",
-                first_of(&unlike)
-            ),
-            help: "only the ambient, diffuse and specular colours can differ from face to face: make these faces a mesh \
-                   of their own"
-                .to_owned(),
-        })
+    /// Returns the material of the faces of a slot, with the colours of the mesh's material, `own`: those of faces are
+    /// the shader's.
+    pub fn material_of(&self, slot: u16, own: &Material) -> Material {
+        let Material { ambient, diffuse, specular, .. } = *own;
+        Material { ambient, diffuse, specular, ..self.material(own, slot).clone() }
     }
 }
 
 /// Lists the first few names.
-pub(super) fn first_of(names: &[&String]) -> String {
+fn first_of(names: &[&String]) -> String {
     const FEW: usize = 5;
     let shown: Vec<_> = names.iter().take(FEW).map(|name| text::abridged(name)).collect();
     let listed = text::list(shown.iter().map(|name| &**name));

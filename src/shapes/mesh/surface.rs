@@ -74,6 +74,15 @@ pub struct Surface {
     pub files: Vec<PathBuf>,
 }
 
+/// What faces have beside their corners, in the order of the faces.
+struct Faces {
+    order: Vec<u32>,
+    slots: Vec<u16>,
+    normals: Normals,
+    uv: AtCorners<[f32; 2]>,
+    colours: AtCorners<[f32; 4]>,
+}
+
 /// Options for making a surface from triangles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Look {
@@ -173,43 +182,85 @@ impl Surface {
             normals
         };
         drop(edges);
-        let mut tree =
-            Bvh::of(kept.len(), |face| Aabb::around(&kept[face].map(|corner| vertices[corner as usize])));
-        let sorted = tree.take_order();
-        let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
-        let vertices = in_order_of_use(&vertices, &mut faces);
-        let (normals, mut uv, mut colours) =
-            (normals.sorted(&sorted), uv.sorted(&sorted), colours.sorted(&sorted));
-        uv.share(&normals.faces);
-        colours.share(if uv.is_empty() { &normals.faces } else { &uv.faces });
-        let mut order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
-        let slots =
-            if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
+        let slots = match slots[..] {
+            [] => slots,
+            _ => order.iter().map(|face| slots[*face as usize]).collect(),
+        };
         if !sides.is_empty() {
             order.iter_mut().for_each(|face| *face = sides[*face as usize]);
         }
-        let bounds = Aabb::around(&vertices);
-        let id = 1 + SURFACES.fetch_add(1, Ordering::Relaxed);
         Ok(Self {
-            id,
-            vertices,
             are_rounded: !placement.is_identity(),
-            faces,
-            order,
-            slots,
-            normals,
-            uv,
-            colours,
-            tree,
-            bounds,
-            planes: OnceLock::new(),
-            depths: OnceLock::new(),
             why_not_closed,
             is_two_sided: look.is_two_sided,
             remarks,
             materials,
             finishes,
             files,
+            ..Self::sorted(&vertices, &kept, Faces { order, slots, normals, uv, colours })
+        })
+    }
+
+    /// Returns the surface that consists of these faces, in the order of a tree. It is taken for a closed one.
+    fn sorted(vertices: &[DVec3], corners: &[[u32; 3]], of_faces: Faces) -> Self {
+        let Faces { order, slots, normals, uv, colours } = of_faces;
+        let mut tree = Bvh::of(corners.len(), |face| {
+            Aabb::around(&corners[face].map(|corner| vertices[corner as usize]))
+        });
+        let sorted = tree.take_order();
+        let mut faces: Vec<_> = sorted.iter().map(|face| corners[*face as usize]).collect();
+        let vertices = in_order_of_use(vertices, &mut faces);
+        let (normals, mut uv, mut colours) =
+            (normals.sorted(&sorted), uv.sorted(&sorted), colours.sorted(&sorted));
+        uv.share(&normals.faces);
+        colours.share(if uv.is_empty() { &normals.faces } else { &uv.faces });
+        let slots = match slots[..] {
+            [] => slots,
+            _ => sorted.iter().map(|face| slots[*face as usize]).collect(),
+        };
+        Self {
+            id: 1 + SURFACES.fetch_add(1, Ordering::Relaxed),
+            bounds: Aabb::around(&vertices),
+            vertices,
+            are_rounded: false,
+            faces,
+            order: sorted.iter().map(|face| order[*face as usize]).collect(),
+            slots,
+            normals,
+            uv,
+            colours,
+            tree,
+            planes: OnceLock::new(),
+            depths: OnceLock::new(),
+            why_not_closed: Openness::default(),
+            is_two_sided: false,
+            remarks: Vec::new(),
+            materials: Vec::new(),
+            finishes: Vec::new(),
+            files: Vec::new(),
+        }
+    }
+
+    /// Returns the part of the surface that consists of the faces whose slots are kept; `None` without any. Faces keep
+    /// their numbers, and the sides that are lit.
+    pub fn part(&self, is_kept: impl Fn(u16) -> bool) -> Option<Self> {
+        let slot = |face: usize| self.slots.get(face).copied().unwrap_or(0);
+        let kept: Vec<_> = (0..self.face_count()).filter(|face| is_kept(slot(*face))).collect();
+        let faces: Vec<_> = kept.iter().map(|face| self.faces[*face]).collect();
+        let of_faces = Faces {
+            order: kept.iter().map(|face| self.order[*face]).collect(),
+            slots: kept.iter().map(|face| slot(*face)).collect(),
+            normals: self.normals.part(&kept),
+            uv: self.uv.part(&kept),
+            colours: self.colours.part(&kept),
+        };
+        (!kept.is_empty()).then(|| Self {
+            are_rounded: self.are_rounded,
+            why_not_closed: winding::why_not_closed(&Edges::of(&faces, self.vertices.len())),
+            is_two_sided: self.is_two_sided || self.is_closed(),
+            materials: self.materials.clone(),
+            finishes: self.finishes.clone(),
+            ..Self::sorted(&self.vertices, &faces, of_faces)
         })
     }
 

@@ -5,7 +5,7 @@ use super::solid_part::SolidPart;
 use crate::placed::Placed;
 use std::sync::Arc;
 use tabray_world::any_shape::AnyShape;
-use tabray_world::body::{Body, NamedBody, Part, Solid};
+use tabray_world::body::{Body, NamedBody, Part, Solid, Warning};
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::placement::Placement;
 use tabray_world::material::Material;
@@ -89,7 +89,10 @@ pub(super) fn solid_of(object: &Arc<Body>) -> Result<Solid, NoSolid> {
         return Ok(Solid { parts: solid.parts.iter().map(named).collect(), ..(**solid).clone() });
     }
     let body = match object.boundary() {
-        Some(shape) => Arc::new(Body { entity: object.entity, ..seen_as(object, shape) }),
+        Some(shape) => {
+            let (entity, faces) = (object.entity, object.faces.clone());
+            Arc::new(Body { entity, faces, ..seen_as(object, shape) })
+        }
         None => object.clone(),
     };
     if let Some(why) = body.shape.why_not_closed() {
@@ -133,9 +136,12 @@ pub(crate) fn placed(
     {
         return copy;
     }
-    let material = material.or_else(|| object.material.clone()).unwrap_or_default();
-    let copy = Placed::body(object, (placement, max_z), &material);
-    Body { material: Some(material), ..copy }
+    let copy = |object: &Arc<Body>| {
+        let material = material.clone().or_else(|| object.material.clone()).unwrap_or_default();
+        Body { material: Some(material.clone()), ..Placed::body(object, (placement, max_z), &material) }
+    };
+    let faces = object.faces.iter().map(|face| Arc::new(copy(face))).collect();
+    Body { faces, ..copy(object) }
 }
 
 /// Makes the objects of a solid. Without a material, each part keeps its own.
@@ -152,9 +158,17 @@ pub(super) fn body_of(mut solid: Solid, material: Option<Arc<Material>>) -> Resu
     if let Some(material) = material {
         solid.parts.iter_mut().for_each(|part| part.material = material.clone());
     }
+    let with_faces = solid.parts.iter().find(|part| !part.body.faces.is_empty());
+    let warning = with_faces.map(|part| Warning {
+        attribute: "objects",
+        message: format!("ignores the shininess and transparency of the faces of `{}`", part.name),
+        help: "a part of a solid has one material, and the colours of its faces: give it a `material`"
+            .to_owned(),
+    });
     let mut seen = seen(&solid).into_iter();
     let first = seen.next().ok_or(NoSolid::Empty)?;
-    Ok(Body { more: seen.collect(), solid: Some(Box::new(solid)), ..first })
+    let warnings = warning.into_iter().collect();
+    Ok(Body { more: seen.collect(), solid: Some(Box::new(solid)), warnings, ..first })
 }
 
 /// Returns a body with another shape and the appearance of an object.

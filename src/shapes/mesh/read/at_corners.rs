@@ -46,6 +46,17 @@ impl<T: Copy> AtCorners<T> {
         self.faces.iter().flatten().filter(|corner| **corner != NO_VALUE).count()
     }
 
+    /// Returns the values of these faces, with all values.
+    pub fn part(&self, faces: &[usize]) -> Self {
+        match self.is_empty() {
+            true => Self::default(),
+            false => Self {
+                values: self.values.clone(),
+                faces: faces.iter().map(|face| self.faces[*face]).collect::<Vec<_>>().into(),
+            },
+        }
+    }
+
     /// Sorts faces into this order, and values by their first use.
     pub fn sorted(self, order: &[u32]) -> Self {
         if self.is_empty() {

@@ -89,6 +89,46 @@ impl Opacity {
     }
 }
 
+/// How light continues at a surface of a file, as the materials of the scene that are made for it say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Polish {
+    /// Glass.
+    Glass {
+        /// The refractive index inside, relative to outside.
+        index: f64,
+        /// How rough it is, from 0 to 1.
+        roughness: f64,
+        /// The fractions of light that are left after a path of length `at` through it.
+        left: Rgb,
+        /// A length, in the units of the file.
+        at: f64,
+    },
+    /// Metal of one colour.
+    Metal {
+        /// The fraction of the light along the normal that is reflected.
+        colour: Rgb,
+        /// How rough it is, from 0 to 1.
+        roughness: f64,
+    },
+    /// A clear coat over a matt body.
+    Coat {
+        /// The refractive index of the coat.
+        index: f64,
+        /// How rough it is, from 0 to 1.
+        roughness: f64,
+    },
+}
+
+impl Polish {
+    fn numbers(self) -> [f64; 7] {
+        match self {
+            Self::Glass { index, roughness, left, at } => [1.0, index, roughness, left.x, left.y, left.z, at],
+            Self::Metal { colour, roughness } => [2.0, roughness, colour.x, colour.y, colour.z, 0.0, 0.0],
+            Self::Coat { index, roughness } => [3.0, index, roughness, 0.0, 0.0, 0.0, 0.0],
+        }
+    }
+}
+
 /// A material of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finish {
@@ -108,6 +148,10 @@ pub struct Finish {
     pub normals: Option<(Map, f64)>,
     /// The exponent of highlights.
     pub shininess: f64,
+    /// The reflectivity for highlights of lamps alone, without mirror images.
+    pub highlight: Rgb,
+    /// How light continues at the surface; `None` if it is transmitted unbent, and mirrored by `metal` and `specular`.
+    pub polish: Option<Polish>,
     /// The fraction of light that passes through.
     pub transparency: f64,
     /// How opaque the surface is, if it is not opaque everywhere.
@@ -125,6 +169,8 @@ impl Default for Finish {
             emissions: None,
             normals: None,
             shininess: 0.0,
+            highlight: Rgb::ZERO,
+            polish: None,
             transparency: 0.0,
             opacity: None,
         }
@@ -141,14 +187,16 @@ impl Finish {
 
     /// Calls a function with the contents of the material, as bytes.
     pub fn bytes_of(&self, each: &mut dyn FnMut(&[u8])) {
-        let Self { colour, metal, specular, emission, shininess, transparency, .. } = self;
-        let colours = [colour, specular, emission].into_iter().flat_map(|colour| colour.to_array());
+        let Self { colour, metal, specular, emission, shininess, highlight, transparency, .. } = self;
+        let colours =
+            [colour, specular, emission, highlight].into_iter().flat_map(|colour| colour.to_array());
         let slopes = self.normals.as_ref().map_or(0.0, |(_, slopes)| *slopes);
         let opacity = self.opacity.as_ref();
         let least = opacity.and_then(|opacity| opacity.cutoff).unwrap_or(0.0);
         let factor = opacity.map_or(1.0, |opacity| opacity.factor);
         let numbers = colours.chain([*metal, *shininess, *transparency, slopes, least, factor]);
-        numbers.for_each(|number| each(&number.to_le_bytes()));
+        let polish = self.polish.map_or([0.0; 7], Polish::numbers);
+        numbers.chain(polish).for_each(|number| each(&number.to_le_bytes()));
         let normals = self.normals.as_ref().map(|(map, _)| map);
         let opacity = opacity.and_then(|opacity| opacity.map.as_ref());
         for map in [self.colours.as_ref(), self.emissions.as_ref(), normals, opacity] {

@@ -262,10 +262,8 @@ impl Raw {
         match mirror {
             // Illumination models from 3 on have mirror images.
             Some(mirror) if illumination >= 3.0 => (finish.specular, finish.shininess) = (mirror, shininess),
-            _ => hide(
-                mirror.is_some_and(|mirror| mirror != Rgb::ZERO),
-                "Ks and Ns (highlights without mirror images)",
-            ),
+            Some(mirror) if shininess > 0.0 => (finish.highlight, finish.shininess) = (mirror, shininess),
+            _ => {}
         }
         let passed = opacity.map_or(transparency.unwrap_or(0.0), |opacity| 1.0 - opacity);
         // 3ds Max writes 1 for both of an opaque material.

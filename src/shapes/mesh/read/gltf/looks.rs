@@ -2,7 +2,7 @@
 
 use super::buffers::{Buffers, data, unescaped};
 use super::json::{self, Gltf, SpecularGlossiness, Transform};
-use crate::mesh::read::finish::{Finish, Map, Opacity};
+use crate::mesh::read::finish::{Finish, Map, Opacity, Polish};
 use crate::mesh::read::model::{MemoryBudget, Model, Remark};
 use crate::mesh::read::textures::{Textures, first_of};
 use glam::{DVec2, DVec3};
@@ -15,15 +15,23 @@ use tabray_world::text;
 use tabray_world::texture::{CUTOFF, Texture};
 
 /// The material extensions that are rendered, or do not change what is rendered.
-const SHOWN: [&str; 5] = [
+const SHOWN: [&str; 7] = [
     SPECULAR_GLOSSINESS,
+    CLEARCOAT,
+    VOLUME,
     "KHR_materials_emissive_strength",
     "KHR_materials_transmission",
     "KHR_materials_ior",
     "KHR_materials_specular",
 ];
 
+const CLEARCOAT: &str = "KHR_materials_clearcoat";
+const VOLUME: &str = "KHR_materials_volume";
+
 const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+
+/// The greatest roughness of metal that is rendered by facets.
+const ROUGHEST: f64 = 0.5;
 
 /// The reflectivity of what is no metal.
 const DIELECTRIC: f64 = 0.04;
@@ -54,6 +62,7 @@ pub fn furnish(
         images: Vec::new(),
         repeats: model.attributes.uv.values.iter().flatten().any(|at| !(0.0..=1.0).contains(at)),
         covers_in_part: budget.wanted.covers_in_part(),
+        tints: !model.attributes.colours.is_empty(),
     };
     looks.images.resize(json.images.len(), None);
     for material in &json.materials {
@@ -82,8 +91,10 @@ struct Looks<'f> {
     images: Vec<Option<Option<Arc<Texture>>>>,
     /// Whether texture coordinates lie beyond the edges of an image.
     repeats: bool,
-    /// Whether surfaces may cover a part of what is behind them.
+    /// Whether surfaces may cover a part of what is behind them, and be glass, metal and plastic, as by the free rules.
     covers_in_part: bool,
+    /// Whether vertices have colours.
+    tints: bool,
 }
 
 impl Looks<'_> {
@@ -129,13 +140,68 @@ impl Looks<'_> {
             self.unseen.insert("metallicRoughnessTexture (its mean is)".to_owned());
         }
         finish.forge(metal, roughness);
+        finish.polish = self.polish(material, &finish, [metal, roughness]);
+        if let Some(Polish::Metal { roughness, .. }) = finish.polish {
+            finish.metal = 1.0;
+            // Lamps without a size show as highlights about as wide as the facets scatter.
+            finish.shininess = if roughness > 0.1 { 2.0 / roughness.powi(4) - 2.0 } else { 0.0 };
+        }
         if let Some(other) = material.extensions.get(SPECULAR_GLOSSINESS) {
             let other = SpecularGlossiness::deserialize(other)
                 .map_err(|error| format!("one of its materials is not glTF: {error}"))?;
+            finish.polish = None;
             self.by_specular_glossiness(&mut finish, &other)?;
             self.set_opacity(&mut finish, material, other.diffuse_factor[3]);
         }
         Ok(finish)
+    }
+
+    /// Returns what a material is where it is the same at all points: glass with an inside, metal, or a coat. Thin glass is
+    /// a pane that light passes unbent.
+    fn polish(
+        &mut self,
+        material: &json::Material,
+        finish: &Finish,
+        [metal, roughness]: [f64; 2],
+    ) -> Option<Polish> {
+        if !self.covers_in_part {
+            let names =
+                [VOLUME, CLEARCOAT].into_iter().filter(|name| material.extensions.contains_key(*name));
+            self.unseen.extend(names.map(str::to_owned));
+            return None;
+        }
+        let number = |name: &str, number: &str| material.extensions.get(name)?.get(number)?.as_f64();
+        let index = number("KHR_materials_ior", "ior").filter(|index| *index >= 1.0).unwrap_or(1.5).min(4.0);
+        let roughness = roughness.clamp(0.0, 1.0);
+        if finish.transparency > 0.0
+            && number(VOLUME, "thicknessFactor").is_some_and(|thickness| thickness > 0.0)
+        {
+            let colour = material.extensions.get(VOLUME).and_then(|volume| volume.get("attenuationColor"));
+            let channel = |at: usize| colour.and_then(|colour| colour.get(at)?.as_f64()).unwrap_or(1.0);
+            let left = Rgb::new(channel(0), channel(1), channel(2)).clamp(Rgb::splat(1e-6), Rgb::ONE);
+            let at = number(VOLUME, "attenuationDistance").filter(|at| *at > 0.0);
+            let left = if at.is_some() { left } else { Rgb::ONE };
+            return Some(Polish::Glass { index, roughness, left, at: at.unwrap_or(1.0) });
+        }
+        // Very rough metal is rendered as scattering, so that any lamp lights it.
+        if metal >= 0.5
+            && roughness <= ROUGHEST
+            && finish.colours.is_none()
+            && !self.tints
+            && finish.transparency == 0.0
+        {
+            let colour = finish.colour.clamp(Rgb::ZERO, Rgb::ONE);
+            return Some(Polish::Metal { colour, roughness });
+        }
+        let coat = number(CLEARCOAT, "clearcoatFactor").unwrap_or(0.0);
+        if coat >= 0.5 && metal < 0.5 && finish.transparency == 0.0 {
+            let roughness = number(CLEARCOAT, "clearcoatRoughnessFactor").unwrap_or(0.0).clamp(0.0, 1.0);
+            return Some(Polish::Coat { index: 1.5, roughness });
+        }
+        if coat > 0.0 {
+            self.unseen.insert(CLEARCOAT.to_owned());
+        }
+        None
     }
 
     /// Sets how opaque a material is, by the alpha of its images times this factor.
