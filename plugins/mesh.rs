@@ -122,7 +122,7 @@ fn sorted<S: Shader + 'static>(
 /// Returns the function that gives a material the polish of a file.
 fn polish(args: &Args) -> impl Fn(Material, &Polish) -> Material {
     // Lengths in the units of the file grow with the mesh.
-    let size = args.get(&SCALE).abs().element_product().cbrt();
+    let size = libm::cbrt(args.get(&SCALE).abs().element_product());
     move |material, polish| {
         let (interface, specular) = match *polish {
             Polish::Glass { index, roughness, left, at } => {

@@ -75,6 +75,11 @@ impl Sample {
         self.draw(ON_SCATTERING + depth)
     }
 
+    /// Returns two numbers from 0 to 1, which choose how a path goes on after this many rays, and whether it does.
+    pub fn on_branching(&self, depth: u32) -> DVec2 {
+        self.draw(ON_BRANCHING + depth)
+    }
+
     /// Returns two numbers from 0 to 1, different for each purpose.
     fn draw(&self, purpose: u32) -> DVec2 {
         match self.sampler {
@@ -178,6 +183,9 @@ const ON_FACETS: u32 = u32::MAX - 1;
 /// The purpose of the numbers that choose where light goes on from the first surface on a path; those after it count
 /// upward. There are fewer lights.
 const ON_SCATTERING: u32 = 1 << 31;
+
+/// The purpose of the numbers that choose how the first ray of a path goes on; those after it count upward.
+const ON_BRANCHING: u32 = 3 << 30;
 
 /// Returns the point of the unit disc that two numbers from 0 to 1 choose, uniformly by area.
 pub fn on_disc(numbers: DVec2) -> DVec2 {

@@ -104,7 +104,8 @@ fn an_obj_has_the_materials_and_images_of_its_material_file() {
     assert!(!warnings.contains("names material"), "{warnings}");
     assert!(!warnings.contains("not shown"), "{warnings}");
     // Without mirror images, `Ks` is the strength of highlights alone.
-    let highlights = model.objects.iter().map(|object| (object.material.highlight, object.material.shininess));
+    let highlights =
+        model.objects.iter().map(|object| (object.material.highlight, object.material.shininess));
     let highlights: Vec<_> = highlights.collect();
     assert_eq!(highlights, [(DVec3::splat(0.5), 90.0), (DVec3::ZERO, 90.0)]);
     nothing_is_contradicted(&model);
@@ -148,8 +149,11 @@ fn faces_of_two_materials_are_seen_as_two_meshes() {
         ("files.obj", &format!("{looks}{both}")),
         ("red.obj", &format!("{looks}{}", cubes("red", "none"))),
         ("clear.obj", &format!("{looks}{}", cubes("none", "clear"))),
-        ("looks.mtl", "newmtl red\nKd 0.8 0.2 0.1\nillum 3\nKs 0.2 0.2 0.2\nnewmtl clear\nKd 0.4 0.9 0.5\nd 0.3\n\
-          newmtl none\nd 0\n"),
+        (
+            "looks.mtl",
+            "newmtl red\nKd 0.8 0.2 0.1\nillum 3\nKs 0.2 0.2 0.2\nnewmtl clear\nKd 0.4 0.9 0.5\nd 0.3\n\
+          newmtl none\nd 0\n",
+        ),
     ]);
     let picture = |objects: &str| {
         render(&model_in(

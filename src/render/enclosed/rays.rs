@@ -80,6 +80,17 @@ impl<'s> EnclosingTracer<'s> {
         self.is_open
     }
 
+    /// Tells whether light goes on from matt surfaces.
+    fn bounces(&self) -> bool {
+        self.scene.depth.is_some_and(|depth| !depth.scattered.is_empty())
+    }
+
+    /// Tells whether the colours are those of samples whose paths are chosen by chance. Such a sample may be brighter than
+    /// all light: what bounds the light bounds their mean alone.
+    fn is_by_chance(&self) -> bool {
+        self.bounces() && !matches!(self.lights, LightPoints::All)
+    }
+
     fn rules(&self) -> Rules {
         self.scene.model.camera.value.rules
     }
@@ -103,7 +114,7 @@ impl<'s> EnclosingTracer<'s> {
         }
         if ray.depth > 0 {
             let most = self.bound(ray);
-            if ray.weight * most < self.limits.negligible {
+            if ray.weight * most < self.limits.negligible && !self.is_by_chance() {
                 return Some(up_to(most));
             }
             if ray.depth >= self.limits.depth {
@@ -135,6 +146,7 @@ impl<'s> EnclosingTracer<'s> {
             let half = |channel: &N| 0.5 * channel.mean().width().to_f64();
             let seen = match seen {
                 Some(seen) if seen.iter().all(|channel| half(channel) <= self.limits.negligible) => seen,
+                Some(seen) if self.is_by_chance() => seen,
                 Some(seen) => {
                     let most = self.bound_at(ray, &hit, place);
                     per_axis(|at| if half(&seen[at]) > most { within(most) } else { seen[at] })
@@ -239,12 +251,13 @@ impl<'s> EnclosingTracer<'s> {
             colour = per_axis(|channel| colour[channel] + glints[channel]);
         }
         let unit = per_axis(|axis| dir[axis] / ray.length);
-        let bounces = self.scene.depth.is_some_and(|depth| !depth.scattered.is_empty());
         let is_aimed = |index: &usize| lamps::is_aimed_at(&self.scene.model.lights[*index].value);
         let facet = match (interface.roughness(), self.lights) {
             (0.0, _) | (_, LightPoints::Middle) => None,
             // The light that facets mirror by aim is only bounded.
-            _ if bounces || self.scene.lights.iter().any(is_aimed) => return self.open(ray, self.bound(ray)),
+            _ if self.bounces() || self.scene.lights.iter().any(is_aimed) => {
+                return self.open(ray, self.bound(ray));
+            }
             (roughness, LightPoints::Of(sample)) => {
                 Some(surface.with_facet(unit, roughness, sample.on_facet(ray.depth as u32))?)
             }
@@ -275,12 +288,16 @@ impl<'s> EnclosingTracer<'s> {
         if let Some(most) = self.scene.depth.and_then(|depth| depth.scattered.first()) {
             // The light that reaches a matt surface from others is only bounded.
             let LightRange { low, high } = *most;
-            if !low.is_finite() || !high.is_finite() {
+            let is_open = self.is_by_chance() || !low.is_finite() || !high.is_finite();
+            if is_open && !is_black(&surface.diffuse) {
                 return None;
             }
             let any = |channel: usize| Interval { low: N::of(low[channel]), high: N::of(high[channel]) };
-            colour =
-                per_axis(|channel| colour[channel] + surface.diffuse[channel] * N::enclosing(any(channel)));
+            if !is_open {
+                colour = per_axis(|channel| {
+                    colour[channel] + surface.diffuse[channel] * N::enclosing(any(channel))
+                });
+            }
         }
         let alone: Colour<N> = constants(self.scene.model.objects[surface.place.object].material.highlight);
         let specular = per_axis(|channel| surface.specular[channel] + alone[channel]);
@@ -321,6 +338,9 @@ impl<'s> EnclosingTracer<'s> {
     /// is beyond the tolerable.
     fn open<N: Number>(&mut self, ray: &Ray<N>, most: f64) -> Option<Colour<N>> {
         self.is_open = true;
+        if self.is_by_chance() {
+            return None;
+        }
         (ray.weight * most <= self.limits.tolerable).then(|| up_to(most))
     }
 

@@ -227,12 +227,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     open(covered * kept * passed * diffuse.get(lane), dir, side, RayKind::Scattered)
                 })
                 .map(|ray| OpenRay { bounces: before.bounces + 1, ..ray });
-            scratch.outcomes[place].onward = [
+            let onward = [
                 onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),
                 open(covered * reflected, dir.get(lane), side, RayKind::Reflected),
                 scattered,
                 open(beyond, group.dir.get(lane), side.opposite(), RayKind::Transmitted),
             ];
+            scratch.outcomes[place].onward = self.choose(&before, onward);
         }
         self.scratch.trees = Some(scratch);
     }

@@ -6,12 +6,18 @@
 //! over pi, so that its light counts `d` times. The ray counts neither lamps nor skies again, nor ambient light, which
 //! stands in for light from everywhere. What objects emit is met by chance and [by aim](super::aim). Shadow rays pass through glass in straight lines, so lamps behind glass are met
 //! by aim, too; after a mirror, no aim is possible, and what shines there counts.
+//!
+//! Behind a matt surface, a path goes on in one way alone, which is chosen by chance in proportion to what each can
+//! bring, and a path that can bring little ends by chance (Russian roulette: Arvo and Kirk, "Particle transport and
+//! image synthesis", SIGGRAPH 1990). What is chosen counts as much more as it is chosen more rarely, so neither changes
+//! the mean.
 
 use super::arrays::VectorList;
 use super::context::{ShadingScratch, Tracer};
 use super::draws::RIM_POINTS;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
+use super::tree::OpenRay;
 use crate::observer::{RayKind, TraceObserver};
 use glam::{DVec2, DVec3};
 use tabray_world::directions::by_cosine;
@@ -19,6 +25,9 @@ use tabray_world::material::Rgb;
 use tabray_world::scene::kind::Kind;
 use tabray_world::scene::model::Object;
 use tabray_world::surface_point::SurfacePoint;
+
+/// The weight below which paths behind matt surfaces end by chance.
+const FAINT: f64 = 0.25;
 
 /// The light that counts where a ray ends, besides what it passes on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -117,6 +126,42 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
             None => self.diffuses(surface, count, diffuse),
         }
+    }
+
+    /// Chooses among the rays that continue from a hit, after `before` on their path. Behind a matt surface, one of them
+    /// remains at most; before it, all but one that leaves a matt surface and is faint.
+    pub(super) fn choose(&mut self, before: &OpenRay, onward: [Option<OpenRay>; 4]) -> [Option<OpenRay>; 4] {
+        let [through, reflected, scattered, beyond] = onward;
+        let is_path = before.bounces != 0;
+        let sample = self.scratch.samples.get(usize::from(before.camera));
+        let Some(sample) = sample.filter(|_| (is_path || scattered.is_some()) && !self.scratch.are_probes)
+        else {
+            return onward;
+        };
+        let draw = sample.on_branching(before.depth);
+        if self.scratch.path_hashes.is_on {
+            self.scratch.path_hashes.see_facet(before.camera, draw);
+        }
+        let weight = |ray: &OpenRay| ray.weight.abs().max_element();
+        // Goes on along a ray that was chosen with a chance, unless the path ends.
+        let follow = |ray: OpenRay, chance: f64, all: f64| {
+            let survives = (all / FAINT).min(1.0);
+            (draw.y <= survives).then(|| OpenRay { weight: ray.weight / (chance * survives), ..ray })
+        };
+        if !is_path {
+            let scattered = scattered.and_then(|ray| follow(ray, 1.0, weight(&ray)));
+            return [through, reflected, scattered, beyond];
+        }
+        let all = || onward.into_iter().flatten();
+        let total: f64 = all().map(|ray| weight(&ray)).sum();
+        let mut left = draw.x * total;
+        let chosen = all().find(|ray| {
+            left -= weight(ray);
+            left <= 0.0
+        });
+        // The sum is rounded.
+        let chosen = chosen.or_else(|| all().last());
+        [chosen.and_then(|ray| follow(ray, weight(&ray) / total, total)), None, None, None]
     }
 
     /// Returns the direction in which the sample of a ray follows the light that reaches its hit, after `depth` rays

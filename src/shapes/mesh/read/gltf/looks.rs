@@ -144,7 +144,8 @@ impl Looks<'_> {
         if let Some(Polish::Metal { roughness, .. }) = finish.polish {
             finish.metal = 1.0;
             // Lamps without a size show as highlights about as wide as the facets scatter.
-            finish.shininess = if roughness > 0.1 { 2.0 / roughness.powi(4) - 2.0 } else { 0.0 };
+            let width = roughness * roughness;
+            finish.shininess = if roughness > 0.1 { 2.0 / (width * width) - 2.0 } else { 0.0 };
         }
         if let Some(other) = material.extensions.get(SPECULAR_GLOSSINESS) {
             let other = SpecularGlossiness::deserialize(other)
