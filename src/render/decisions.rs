@@ -2,7 +2,7 @@
 
 use crate::features::{FEATURE_SAMPLES, Features};
 use crate::footprint::{MAX_CUTS, MAX_FOOTPRINTS};
-use crate::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
+use crate::limits::{MAX_DIST, MAX_RAYS, of_pixel};
 use crate::plan::depth::Depth;
 use crate::plan::needs::{self, Needs};
 use crate::plan::{Plan, TREE};
@@ -227,8 +227,9 @@ fn depth(model: &Model, depth: &Depth) -> String {
 
 /// Describes how rays end under the free rules.
 fn free_depth(model: &Model, depth: &Depth) -> String {
+    let [rays, work] = of_pixel(model.camera.value.bounces);
     let order = format!(
-        "the heaviest rays are followed first, in each pixel at most {MAX_TREE} rays, or the work of {MAX_RAYS} simple ones"
+        "the heaviest rays are followed first, in each pixel at most {rays} rays, or the work of {work} simple ones"
     );
     if !depth.most.is_finite() {
         return format!("{order}: nothing bounds what they add, as {}", no_bound(model, depth));

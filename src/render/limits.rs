@@ -15,6 +15,12 @@ pub const MAX_TREE: u32 = 4096;
 /// The largest number of parts into which a pixel's samples divide both.
 pub const MIN_PART: u32 = 8;
 
+/// Returns the maximum number of rays that are followed for a pixel under the free rules, and of simple rays whose work
+/// they may take, where light bounces this often: each bounce has as many rays as there are without.
+pub fn of_pixel(bounces: u32) -> [u32; 2] {
+    [MAX_TREE, MAX_RAYS as u32].map(|most| (bounces + 1) * most)
+}
+
 /// The depth below which reflections are traced even where the rays transmitted before them have used up the ray
 /// budget: those of primary rays, and of the rays that continue these.
 pub(crate) const KEPT_DEPTH: usize = 2;

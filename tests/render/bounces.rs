@@ -45,6 +45,42 @@ fn a_closed_ball_shows_the_sum_of_all_bounces() {
 }
 
 #[test]
+fn what_emits_behind_panes_is_met_by_aim_and_counted_once() {
+    let lit = |pane: &str, samples: u32| {
+        mean(&format!(
+            "look_at eye {{ pixeldim 6 4 position 0 1 4 target 0 0 0 angle 20 samples {samples} bounces 1 }}
+             material matt {{ diffuse 0.8 0.8 0.8 }} material glow {{ emission 60 60 60 }}
+             material clear {{ diffuse 1 1 1 transparency 1 }} material half {{ diffuse 0 0 0 transparency 0.5 }}
+             glass air {{ index 1 }}
+             fplane floor {{ material matt point -9 0 9 normal 0 1 0 xdir 1 0 0 dimensions 18 18 }}
+             sphere bulb {{ material glow center 0 3 0 radius 0.1 }} {pane}"
+        ))
+    };
+    let at = |height: f64| format!("point -2 {height} 2 normal 0 1 0 xdir 1 0 0 dimensions 4 4");
+    let bright = lit("", 256);
+    for (pane, passed) in [
+        (format!("fplane pane {{ material clear {} }}", at(1.5)), 1.0),
+        (
+            format!(
+                "fplane pane {{ material half {} }} fplane other {{ material half {} }}",
+                at(1.5),
+                at(2.0)
+            ),
+            0.25,
+        ),
+    ] {
+        let seen = lit(&pane, 256);
+        assert!(
+            (seen - passed * bright).abs().max_element() < 0.01 * bright.x,
+            "{pane}: {seen} for {bright}"
+        );
+    }
+    // Glass that may bend light is passed by chance alone, which takes more samples.
+    let seen = lit(&format!("fplane pane {{ material air {} }}", at(1.5)), 16384);
+    assert!((seen - bright).abs().max_element() < 0.1 * bright.x, "{seen} for {bright}");
+}
+
+#[test]
 fn a_choice_among_ways_keeps_the_mean() {
     // Glass, metal and plastic behind matt walls: what they bring is chosen by chance there, and all of it is as bright.
     let room = |walls: &str| {

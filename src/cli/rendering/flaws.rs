@@ -2,13 +2,14 @@
 
 use crate::process::messages;
 use tabray_core::render::flaws::{BudgetCuts, FarPaths, Flaws, Undecided, UndecidedPixels};
-use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, MAX_TREE};
+use tabray_core::render::limits::{MAX_DIST, MAX_RAYS, of_pixel};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::Proofs;
 use tabray_core::scene::model::Model;
 use tabray_core::text::{count, short};
 use tabray_core::world::certify::Doubt;
 use tabray_core::world::rules::Rules;
+use tabray_core::world::sensor::Sensor;
 
 /// The maximum number of reasons that are listed why pixels could not be decided.
 const MAX_REASONS: usize = 4;
@@ -44,7 +45,7 @@ pub fn report_proofs(proofs: Proofs, plan: &Plan) {
 /// Warns of pixels with primary rays that used up their ray budget or could not be decided, if there are any.
 pub fn warn_of(Flaws { cuts, undecided, .. }: &Flaws, model: &Model) {
     if cuts.pixels > 0 {
-        warn_of_cuts(cuts, model.camera.value.rules);
+        warn_of_cuts(cuts, &model.camera.value);
     }
     if undecided.pixels() > 0 {
         warn_of_undecided(undecided, model);
@@ -95,7 +96,8 @@ fn cure(undecided: &Undecided) -> &'static str {
     }
 }
 
-fn warn_of_cuts(cuts: &BudgetCuts, rules: Rules) {
+fn warn_of_cuts(cuts: &BudgetCuts, &Sensor { rules, bounces, .. }: &Sensor) {
+    let [rays, work] = of_pixel(bounces);
     let levels = 255.0 * cuts.most;
     let most = match (levels.is_finite(), rules) {
         (true, Rules::Notes) => format!("off by at most {} of 255 levels", short(levels)),
@@ -105,7 +107,7 @@ fn warn_of_cuts(cuts: &BudgetCuts, rules: Rules) {
     let budget = match rules {
         Rules::Notes => format!("each ray from the viewer may take the work of {MAX_RAYS} simple rays"),
         Rules::Free => format!(
-            "the samples of a pixel together may take {MAX_TREE} rays, and the work of {MAX_RAYS} simple ones"
+            "the samples of a pixel together may take {rays} rays, and the work of {work} simple ones"
         ),
     };
     let pixels = count(cuts.pixels as usize, "pixel");

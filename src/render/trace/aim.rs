@@ -16,6 +16,7 @@ use super::facets::Facets;
 use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
+use super::tree::OpenRay;
 use crate::observer::TraceObserver;
 use crate::plan::Ways;
 use crate::plan::glow::Glow;
@@ -136,7 +137,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut aimed = take(&mut self.scratch.aimed);
         aimed.clear();
         let mut lighting = self.scratch.lighting.take().unwrap_or_default();
-        let LightScratch { draws, toward, t_max, blocked, shadows, .. } = &mut *lighting;
+        let LightScratch { draws, toward, t_max, shines, blocked, shadows, emissivity: passed, .. } =
+            &mut *lighting;
         let count = group.padded();
         let (t_max, slack) = (resized(t_max, count), self.slack());
         t_max.fill(0.0);
@@ -169,10 +171,24 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
         }
         if !aimed.is_empty() {
-            let blocked = resized(blocked, count);
             let from = aabb::around(self.cpu, surface.points.view(count));
-            self.shadow(group, surface, &LightPaths { from, to, toward }, t_max, shadows, blocked);
-            aimed.retain(|aimed| blocked[aimed.lane] != 1);
+            let paths = LightPaths { from, to, toward };
+            if self.plan.has_glass {
+                let shines = resized(shines, count);
+                shines.fill(0);
+                aimed.iter().for_each(|aimed| shines[aimed.lane] = 1);
+                passed.fill(count, Rgb::ONE);
+                // Light that is bent on the way is met by chance.
+                self.scratch.unbent = true;
+                self.pass(group, surface, &paths, t_max, shines, passed);
+                self.scratch.unbent = false;
+                aimed.retain(|aimed| shines[aimed.lane] != 0);
+                aimed.iter_mut().for_each(|aimed| aimed.sample.light *= passed.get(aimed.lane));
+            } else {
+                let blocked = resized(blocked, count);
+                self.shadow(group, surface, &paths, t_max, shadows, blocked);
+                aimed.retain(|aimed| blocked[aimed.lane] != 1);
+            }
         }
         self.scratch.lighting = Some(lighting);
         aimed
@@ -190,17 +206,18 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let place = group.places.get(lane.min(group.len - 1));
         let trees = self.scratch.trees.as_ref().filter(|_| self.depth != 0);
         let Some((trees, place)) = trees.zip(place) else { return 1.0 };
-        let by_chance = trees.wave[*place as usize].density;
+        let OpenRay { density: by_chance, chosen: (from, at), .. } = trees.wave[*place as usize];
         if by_chance == f64::INFINITY {
             return 1.0;
         }
-        let (at, dir) = (group.origin.get(lane), group.dir.get(lane));
+        let dir = group.dir.get(lane);
+        let distance = distance + (group.origin.get(lane) - at).length();
         let lamp = self.plan.lamps.get(object).copied().flatten();
         let emitter = lamp.and_then(|lamp| self.model.lights[lamp].value.emitter());
         let by_aim = match (emitter, &self.plan.glow) {
             (Some(emitter), _) => emitter.density(at, dir, distance),
             (None, Some(glow)) => {
-                glow.density((object, normal, light), (group.origin_object, at), dir, distance)
+                glow.density((object, normal, light), (Some(from as usize), at), dir, distance)
             }
             (None, None) => None,
         };

@@ -110,6 +110,8 @@ pub struct Scratch {
     pub(super) transmittances: Vec<Box<Transmittance>>,
     /// The scratch space of direct light, which is finished before any rays continue.
     pub(super) lighting: Option<Box<LightScratch>>,
+    /// Whether shadow rays pass only through what does not bend light.
+    pub(super) unbent: bool,
     /// What a packet aims at.
     pub(super) aimed: Vec<Aimed>,
     /// Not 0 for shadow rays whose occlusion is in doubt.

@@ -208,7 +208,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 };
                 let (weight, shows_patches) = (passed * weight, before.shows_patches && keeps);
                 let counted = before.counted.after(kind);
+                let is_unbent = kind == RayKind::Transmitted && !object.bends_light();
                 let density = match kind {
+                    RayKind::Transmitted if is_unbent => Some(before.density),
                     RayKind::Reflected if aims && !surface.is_in_medium(object, lane) => {
                         surface.facets.get(lane).map(|facets| facets.density_of(dir))
                     }
@@ -216,7 +218,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     _ => None,
                 };
                 let density = density.unwrap_or(f64::INFINITY);
-                let ray = OpenRay { weight, dir, side, kind, shows_patches, counted, density, ..ray };
+                let chosen = if is_unbent { before.chosen } else { (ray.object, ray.origin) };
+                let ray = OpenRay { weight, dir, side, kind, shows_patches, counted, density, chosen, ..ray };
                 (weight != Rgb::ZERO).then_some(ray)
             };
             let goes_on = scatters && before.bounces < self.plan.camera.bounces;

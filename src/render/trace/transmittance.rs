@@ -61,7 +61,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
                 continue;
             };
-            if self.model.objects[index].is_opaque() {
+            let object = &self.model.objects[index];
+            if object.is_opaque() || self.scratch.unbent && object.bends_light() {
                 lanes.iter().for_each(|lane| blocker[usize::from(*lane)] = id);
                 continue;
             }

@@ -19,7 +19,7 @@
 
 use super::scatter::CountedLight;
 use super::wave::Outcome;
-use crate::limits::{MAX_RAYS, MAX_TREE, MIN_PART};
+use crate::limits::{MAX_TREE, MIN_PART, of_pixel};
 use crate::observer::{DropReason, RayKind};
 use crate::plan::depth::{Depth, LightRange};
 use glam::DVec3;
@@ -75,6 +75,8 @@ pub(super) struct OpenRay {
     /// The density of its direction, per unit of solid angle, if lamps are also met by aim from where it starts;
     /// infinite otherwise.
     pub density: f64,
+    /// Where its direction was chosen, by the object's index and the point: it has come from there unbent.
+    pub chosen: (u32, DVec3),
 }
 
 impl OpenRay {
@@ -112,6 +114,7 @@ impl OpenRay {
             bounces: 0,
             counted: CountedLight::All,
             density: f64::INFINITY,
+            chosen: (0, DVec3::ZERO),
         }
     }
 }
@@ -190,9 +193,10 @@ pub(super) struct Ends {
 impl Ends {
     pub fn of(camera: &Sensor) -> Self {
         let (display, parts) = (camera.display(), camera.samples.min(MIN_PART));
+        let [rays, work] = of_pixel(camera.bounces).map(|most| most / parts);
         Self {
             is_averaged: !camera.is_single(),
-            budget: Budget { rays: MAX_TREE / parts, work: MAX_RAYS as u32 / parts },
+            budget: Budget { rays, work },
             faint: ENDED / (16.0 * f64::from(MAX_TREE) * 255.0 * display.steepest()),
             display,
         }

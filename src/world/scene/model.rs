@@ -157,6 +157,12 @@ impl Object {
         self.material.transparency == 0.0 && !self.shader.covers_in_part()
     }
 
+    /// Tells whether light that passes through the object may be bent.
+    #[inline]
+    pub fn bends_light(&self) -> bool {
+        self.material.transparency != 0.0 && self.material.interface.is_some()
+    }
+
     /// Returns the fraction of light that passes through on its way from a lamp at this point, for each channel: all
     /// where nothing is [covered](crate::shader::Shader::coverage), and the [tint](Self::tint) of what is.
     pub fn passed(&self, at: &SurfacePoint) -> Rgb {
