@@ -115,6 +115,53 @@ fn an_obj_has_the_materials_and_images_of_its_material_file() {
     assert_eq!(look(&model, [2.5, 3.0, 0.0])[1], [0.0625, 0.0, 0.0]);
 }
 
+/// A square of two by two with the image of two colours, shown as a texture and a sampler say.
+fn square(transform: &str, sampler: &str) -> String {
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "indices": 2, "material": 0}}]}}],
+        "materials": [{{"pbrMetallicRoughness": {{"metallicFactor": 0, "baseColorTexture": {{"index": 0,
+            "extensions": {{"KHR_texture_transform": {{{transform}}}}}}}}}}}],
+        "textures": [{{"source": 0, "sampler": 0}}], "images": [{{"uri": "images/two colours.png"}}],
+        "samplers": [{{"magFilter": 9728 {sampler}}}], "buffers": [{{"uri": "square.bin", "byteLength": 92}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 48}}, {{"buffer": 0, "byteOffset": 48, "byteLength": 32}},
+            {{"buffer": 0, "byteOffset": 80, "byteLength": 12}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}},
+            {{"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"}},
+            {{"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"}}]}}"#
+    )
+}
+
+#[test]
+fn images_of_gltf_are_turned_and_wrapped_as_it_says() {
+    let folder = folder(&[]);
+    let corners: [f32; 12] = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0, 0.0, 2.0, 0.0];
+    let uv: [f32; 8] = [0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
+    let faces: [u16; 6] = [0, 1, 2, 0, 2, 3];
+    let mut bytes: Vec<u8> = corners.iter().chain(&uv).flat_map(|number| number.to_le_bytes()).collect();
+    bytes.extend(faces.iter().flat_map(|corner| corner.to_le_bytes()));
+    fs::write(folder.path().join("square.bin"), bytes).expect("a file");
+    let (red, green, blue, grey) = ([0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5], [0.25; 3]);
+    for (transform, sampler, upper, lower) in [
+        ("", "", [red, green], [blue, grey]),
+        // Texture coordinates turn counterclockwise, and so the image clockwise.
+        (r#""rotation": 1.5707963267948966"#, "", [blue, red], [grey, green]),
+        (r#""offset": [0.5, 0]"#, "", [green, red], [grey, blue]),
+        (r#""offset": [0.5, 0]"#, r#", "wrapS": 33071"#, [green, green], [grey, grey]),
+        (r#""offset": [1, 0]"#, r#", "wrapS": 33648"#, [green, red], [grey, blue]),
+        (r#""offset": [0, 0.5], "scale": [1, 1]"#, r#", "wrapT": 33071"#, [blue, grey], [blue, grey]),
+    ] {
+        fs::write(folder.path().join("square.gltf"), square(transform, sampler)).expect("a file");
+        let (model, warnings) = read(folder.path(), "file square.gltf materials file");
+        assert!(!warnings.contains("not shown"), "{warnings}");
+        for (y, row) in [(1.6, upper), (0.4, lower)] {
+            for (x, diffuse) in [0.4, 1.6].into_iter().zip(row) {
+                is_near(&model, [x, y, 0.0], [diffuse.map(|channel| 0.5 * channel), diffuse, [0.0; 3]]);
+            }
+        }
+    }
+}
+
 /// Two cubes, with a material each.
 fn cubes(one: &str, other: &str) -> String {
     let corners = |left: f64| {

@@ -1,6 +1,6 @@
 //! Appearances of faces as given by a mesh's file.
 
-use super::read::{Finish, Map, Opacity, Polish};
+use super::read::{Finish, Map, Opacity, Polish, Wrap};
 use super::surface::Surface;
 use crate::uv;
 use glam::{DVec2, DVec3};
@@ -85,12 +85,11 @@ impl Finished {
     /// Returns the position of a spot in an image, and the extent of a patch there, both in texels.
     fn place(&self, spot: &Spot, map: &Map, patch: Option<Patch>) -> Option<[DVec2; 2]> {
         let corners = self.surface.uv.at(spot.face)?.map(|[u, v]| DVec2::new(u.into(), v.into()));
-        let size = DVec2::from(map.texture.size().map(f64::from));
         let middle = spot.uv(corners, spot.at);
         let reach = |side: DVec3| (spot.uv(corners, spot.at + side) - middle).abs();
         let extent = patch.map_or(DVec2::ZERO, |patch| reach(patch.sides[0]) + reach(patch.sides[1]));
-        let place = (middle * map.scale + map.offset) * size;
-        place.is_finite().then_some([place, (extent * map.scale).abs() * size])
+        let [place, extent] = map.place(middle, extent);
+        place.is_finite().then_some([place, extent])
     }
 
     /// Returns the colour of an image at a spot, or white without an image.
@@ -98,9 +97,14 @@ impl Finished {
         let Some(map) = map else { return Rgb::ONE };
         let Some([place, extent]) = self.place(spot, map, patch) else { return Rgb::ONE };
         if extent.max_element() > 1.0 {
-            return map.texture.mean_repeated(place - 0.5 * extent, place + 0.5 * extent);
+            let [mut low, mut high] = [place - 0.5 * extent, place + 0.5 * extent];
+            let size = DVec2::from(map.texture.size().map(f64::from));
+            for axis in (0..2).filter(|axis| map.wrap[*axis] != Wrap::Repeat) {
+                (low[axis], high[axis]) = (low[axis].max(0.0), high[axis].min(size[axis]));
+            }
+            return map.texture.mean_repeated(low, high);
         }
-        map.texture.blended(place, |column, row| map.texture.texel(column, row))
+        map.blended(place, |column, row| map.texture.texel(column, row))
     }
 
     /// Returns the colour of the image of a finish at a spot, or white without an image. Where a part is covered, it is
@@ -111,7 +115,7 @@ impl Finished {
         if !covers_in_part || !map.texture.has_alpha() {
             return self.light(spot, Some(map), patch);
         }
-        self.place(spot, map, None).map_or(Rgb::ONE, |[place, _]| map.texture.blended_by_alpha(place))
+        self.place(spot, map, None).map_or(Rgb::ONE, |[place, _]| map.blended_by_alpha(place))
     }
 
     /// Returns the corner colours of a face, blended at a spot, or white if it has none.
@@ -176,14 +180,17 @@ impl Finished {
         let (Some(map), Some(corners)) = (map, self.surface.uv.at(face)) else { return white };
         let n = Interval::<f64>::constant;
         let texels = |axis: usize| {
-            let [a, b, c] = corners.map(|uv| n(uv[axis].into()));
-            let at = a + weights[0] * (b - a) + weights[1] * (c - a);
+            let at = [0, 1].map(|axis| {
+                let [a, b, c] = corners.map(|uv| n(uv[axis].into()));
+                a + weights[0] * (b - a) + weights[1] * (c - a)
+            });
             let size = map.texture.size()[axis];
-            let Interval { low, high } =
-                (at * n(map.scale[axis]) + n(map.offset[axis])) * n(size.into()) - n(0.5);
+            let [along_u, along_v] = [map.matrix.x_axis[axis], map.matrix.y_axis[axis]];
+            let at = at[0] * n(along_u) + at[1] * n(along_v) + n(map.offset[axis]);
+            let Interval { low, high } = at * n(size.into()) - n(0.5);
             // Blended colours lie between those of the surrounding texels.
             let (low, high) = (low.floor() as i64, (high.floor() as i64).saturating_add(1));
-            (low..=high).map(move |at| at.rem_euclid(i64::from(size.max(1))) as u32)
+            (low..=high).map(move |at| map.wrap[axis].texel(at, size))
         };
         map.texture.enclose(texels(0), texels(1))
     }
@@ -254,7 +261,7 @@ impl Shader for Finished {
             return at.normal;
         };
         let DVec3 { x, y, z } =
-            2.0 * map.texture.blended(place, |column, row| map.texture.numbers(column, row)) - 1.0;
+            2.0 * map.blended(place, |column, row| map.texture.numbers(column, row)) - 1.0;
         let upright = |along: DVec3| (along - along.dot(at.normal) * at.normal).normalize_or_zero();
         let bent = *strength * (x * upright(along_u) + y * upright(along_v)) + z.max(0.0) * at.normal;
         bent.try_normalize().unwrap_or(at.normal)

@@ -1,19 +1,94 @@
 //! Materials of a file, as far as they are rendered.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 use std::sync::Arc;
 use tabray_world::material::Rgb;
 use tabray_world::texture::Texture;
 
-/// An image on a surface, by texture coordinates. Outside of 0 to 1, the image repeats.
+/// What an image shows beyond its edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// It repeats.
+    #[default]
+    Repeat,
+    /// It repeats, every other time mirrored.
+    Mirror,
+    /// Its edge goes on.
+    Clamp,
+}
+
+impl Wrap {
+    /// Returns the place within an image of this size, in texels, that shows what a place beyond its edges does.
+    fn fold(self, at: f64, size: f64) -> f64 {
+        let folded = match self {
+            Self::Repeat => return at,
+            Self::Mirror => size - (at.rem_euclid(2.0 * size) - size).abs(),
+            Self::Clamp => at,
+        };
+        // Blends at the edge are those of equal texels.
+        folded.max(0.5).min(size - 0.5)
+    }
+
+    /// Returns the texel that is seen at a column or row beyond the edges of an image of this size.
+    pub fn texel(self, at: i64, size: u32) -> u32 {
+        let size = i64::from(size.max(1));
+        let folded = match self {
+            Self::Repeat => at.rem_euclid(size),
+            Self::Mirror => {
+                let at = at.rem_euclid(2 * size);
+                at.min(2 * size - 1 - at)
+            }
+            Self::Clamp => at.clamp(0, size - 1),
+        };
+        folded as u32
+    }
+}
+
+/// An image on a surface, by texture coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// The image.
     pub texture: Arc<Texture>,
-    /// The factor of the texture coordinates.
-    pub scale: DVec2,
-    /// The offset of the scaled texture coordinates.
+    /// The matrix of the texture coordinates.
+    pub matrix: DMat2,
+    /// The offset that is added then.
     pub offset: DVec2,
+    /// What is seen beyond the edges, along u and along v.
+    pub wrap: [Wrap; 2],
+    /// Whether texels are seen as squares from near by.
+    pub is_sharp: bool,
+}
+
+impl Map {
+    /// Makes an image that repeats, and spans the texture coordinates from 0 to 1.
+    pub fn new(texture: Arc<Texture>) -> Self {
+        let (matrix, offset) = (DMat2::IDENTITY, DVec2::ZERO);
+        Self { texture, matrix, offset, wrap: [Wrap::Repeat; 2], is_sharp: false }
+    }
+
+    /// Returns where texture coordinates lie, and an extent along them, both in texels.
+    pub fn place(&self, at: DVec2, extent: DVec2) -> [DVec2; 2] {
+        let size = DVec2::from(self.texture.size().map(f64::from));
+        let place = (self.matrix * at + self.offset) * size;
+        let folded = |axis: usize| self.wrap[axis].fold(place[axis], size[axis]);
+        let extent = DMat2::from_cols(self.matrix.x_axis.abs(), self.matrix.y_axis.abs()) * extent;
+        [DVec2::new(folded(0), folded(1)), extent * size]
+    }
+
+    /// Returns a blend of the four texels around a place or, if texels are squares, the texel there.
+    pub fn blended(&self, place: DVec2, texel: impl Fn(u32, u32) -> DVec3) -> DVec3 {
+        self.texture.blended(self.seen(place), texel)
+    }
+
+    /// Blends the light of the four texels around a place, each as much as it covers, as [`blended`](Self::blended) does.
+    pub fn blended_by_alpha(&self, place: DVec2) -> DVec3 {
+        self.texture.blended_by_alpha(self.seen(place))
+    }
+
+    /// Returns the place that is seen at a place.
+    fn seen(&self, place: DVec2) -> DVec2 {
+        if self.is_sharp { place.floor() + 0.5 } else { place }
+    }
 }
 
 /// How opaque a surface is from place to place.
@@ -52,7 +127,7 @@ impl Opacity {
     fn at(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> f64 {
         let blended = |map: &Map| {
             let opacity = |column, row| DVec3::splat(self.texel(column, row));
-            place(map).map(|place| map.texture.blended(place, opacity).x)
+            place(map).map(|place| map.blended(place, opacity).x)
         };
         self.factor * self.map.as_ref().and_then(blended).unwrap_or(1.0)
     }
@@ -201,9 +276,10 @@ impl Finish {
         let opacity = opacity.and_then(|opacity| opacity.map.as_ref());
         for map in [self.colours.as_ref(), self.emissions.as_ref(), normals, opacity] {
             each(&[u8::from(map.is_some())]);
-            let Some(Map { texture, scale, offset }) = map else { continue };
-            let numbers = scale.to_array().into_iter().chain(offset.to_array());
+            let Some(Map { texture, matrix, offset, wrap, is_sharp }) = map else { continue };
+            let numbers = matrix.to_cols_array().into_iter().chain(offset.to_array());
             numbers.for_each(|number| each(&number.to_le_bytes()));
+            each(&[wrap[0] as u8, wrap[1] as u8, u8::from(*is_sharp)]);
             texture.load().into_iter().for_each(|texels| each(&texels.raw()));
         }
     }
@@ -213,5 +289,26 @@ impl Finish {
     pub fn forge(&mut self, metal: f64, roughness: f64) {
         let smoothness = 1.0 - roughness.clamp(0.0, 1.0);
         self.metal = metal.clamp(0.0, 1.0) * smoothness * smoothness;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_beyond_an_edge_repeats_is_mirrored_or_goes_on() {
+        for (wrap, columns) in [
+            (Wrap::Repeat, [1, 2, 0, 1, 2, 0, 1]),
+            (Wrap::Mirror, [1, 0, 0, 1, 2, 2, 1]),
+            (Wrap::Clamp, [0, 0, 0, 1, 2, 2, 2]),
+        ] {
+            for (at, column) in (-2..).zip(columns) {
+                assert_eq!(wrap.texel(at, 3), column, "{wrap:?} {at}");
+                // In the middle of the texel, or half a texel from the edge.
+                let folded = wrap.fold(at as f64 + 0.5, 3.0).rem_euclid(3.0);
+                assert_eq!(folded, f64::from(column) + 0.5, "{wrap:?} {at}");
+            }
+        }
     }
 }

@@ -21,7 +21,7 @@ mod textures;
 
 pub(super) use at_corners::in_order_of_use;
 pub use at_corners::{AtCorners, Attributes, NO_VALUE};
-pub use finish::{Finish, Map, Opacity, Polish};
+pub use finish::{Finish, Map, Opacity, Polish, Wrap};
 use format::Format;
 use model::MemoryBudget;
 pub use model::{FilePosition, Model, ReadError, Remark, Wanted};

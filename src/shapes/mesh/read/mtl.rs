@@ -4,7 +4,7 @@ use super::blocks::{self, Words, words};
 use super::finish::{Finish, Map, Opacity};
 use super::model::{MemoryBudget, Model, Remark};
 use super::textures::{Textures, first_of};
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::path::Path;
@@ -334,7 +334,8 @@ fn map(mut words: Words, place: &str, textures: &mut Textures) -> Option<Option<
     let end = if is_comment { words.rest.len() - after.rest.len() - 1 } else { words.rest.len() };
     let name = String::from_utf8_lossy(words.rest[..end].trim_ascii());
     let texture = textures.named(&name, place);
-    Some(texture.map(|texture| (Map { texture, scale, offset }, bumps)))
+    let matrix = DMat2::from_diagonal(scale);
+    Some(texture.map(|texture| (Map { matrix, offset, ..Map::new(texture) }, bumps)))
 }
 
 /// Tells whether an image holds normals: nearly unit vectors, which point out of the surface on average.

@@ -6,7 +6,6 @@ use super::model::{MemoryBudget, Model, ReadError, Wanted};
 use super::ply_header::{Encoding, Header, header};
 use super::textures::Textures;
 use super::{ply_bytes, ply_text};
-use glam::DVec2;
 use std::mem::take;
 use std::path::Path;
 
@@ -47,7 +46,7 @@ fn furnish(model: &mut Model, images: &[(String, usize)], folder: &Path, budget:
     let mut textures = Textures::new(folder, budget);
     for (name, line) in images {
         let texture = textures.named(name, &format!("line {line}"));
-        let map = |texture| Map { texture, scale: DVec2::ONE, offset: DVec2::ZERO };
+        let map = Map::new;
         model.materials.push(name.clone());
         model.finishes.push(Some(Finish { colours: texture.map(map), ..Finish::default() }));
     }

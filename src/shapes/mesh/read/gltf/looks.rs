@@ -2,10 +2,10 @@
 
 use super::buffers::{Buffers, data, unescaped};
 use super::json::{self, Gltf, SpecularGlossiness, Transform};
-use crate::mesh::read::finish::{Finish, Map, Opacity, Polish};
+use crate::mesh::read::finish::{Finish, Map, Opacity, Polish, Wrap};
 use crate::mesh::read::model::{MemoryBudget, Model, Remark};
 use crate::mesh::read::textures::{Textures, first_of};
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -60,7 +60,6 @@ pub fn furnish(
         textures: Textures::new(folder, budget),
         unseen: BTreeSet::new(),
         images: Vec::new(),
-        repeats: model.attributes.uv.values.iter().flatten().any(|at| !(0.0..=1.0).contains(at)),
         covers_in_part: budget.wanted.covers_in_part(),
         tints: !model.attributes.colours.is_empty(),
     };
@@ -89,8 +88,6 @@ struct Looks<'f> {
     unseen: BTreeSet<String>,
     /// The images that were read, or `None` inside for those that cannot be.
     images: Vec<Option<Option<Arc<Texture>>>>,
-    /// Whether texture coordinates lie beyond the edges of an image.
-    repeats: bool,
     /// Whether surfaces may cover a part of what is behind them, and be glass, metal and plastic, as by the free rules.
     covers_in_part: bool,
     /// Whether vertices have colours.
@@ -264,22 +261,14 @@ impl Looks<'_> {
             self.unseen.insert("images by TEXCOORD_1".to_owned());
             return Ok(None);
         }
-        if *rotation != 0.0 {
-            self.unseen.insert("the rotation of images".to_owned());
-        }
         let sampler = texture.sampler.and_then(|index| self.json.samplers.get(index));
-        let mut hide = |is_hidden: bool, what: &str| {
-            if is_hidden {
-                self.unseen.insert(what.to_owned());
-            }
+        let wrap = |wrap: Option<u32>| match wrap {
+            Some(CLAMP) => Wrap::Clamp,
+            Some(MIRROR) => Wrap::Mirror,
+            _ => Wrap::Repeat,
         };
-        let wraps = sampler.map_or([None; 2], |sampler| [sampler.wrap_s, sampler.wrap_t]);
-        let is_other = wraps.into_iter().flatten().any(|wrap| wrap != REPEAT);
-        hide(self.repeats && is_other, "images that do not repeat");
-        hide(
-            sampler.and_then(|sampler| sampler.mag_filter) == Some(NEAREST),
-            "images whose texels are seen as squares",
-        );
+        let wrap = sampler.map_or([Wrap::Repeat; 2], |sampler| [sampler.wrap_s, sampler.wrap_t].map(wrap));
+        let is_sharp = sampler.and_then(|sampler| sampler.mag_filter) == Some(NEAREST);
         let image = self.json.images.get(source).ok_or_else(|| missing("image", source))?;
         let texture = match &self.images[source] {
             Some(known) => known.clone(),
@@ -290,9 +279,11 @@ impl Looks<'_> {
             }
         };
         let (scale, offset) = (DVec2::from(scale.unwrap_or([1.0; 2])), DVec2::from(*offset));
-        // In glTF, v grows downward.
-        let offset = DVec2::new(offset.x, 1.0 - scale.y - offset.y);
-        Ok(texture.map(|texture| Map { texture, scale, offset }))
+        // Texture coordinates turn counterclockwise as seen. In glTF, v grows downward.
+        let (sin, cos) = libm::sincos(*rotation);
+        let matrix = DMat2::from_cols(scale.x * DVec2::new(cos, sin), scale.y * DVec2::new(-sin, cos));
+        let offset = DVec2::new(offset.x + sin * scale.y, 1.0 - cos * scale.y - offset.y);
+        Ok(texture.map(|texture| Map { texture, matrix, offset, wrap, is_sharp }))
     }
 
     fn texture(&mut self, image: &json::Image, index: usize) -> Result<Option<Arc<Texture>>, String> {
@@ -309,8 +300,9 @@ impl Looks<'_> {
     }
 }
 
-/// Of OpenGL's numbers, those of what is shown of wrap modes and of what is not shown of filters.
-const REPEAT: u32 = 10497;
+/// Of OpenGL's numbers, those of wrap modes other than repetition, and of the filter that shows texels as squares.
+const CLAMP: u32 = 33071;
+const MIRROR: u32 = 33648;
 const NEAREST: u32 = 9728;
 
 /// Returns the mean of an image's texels.
