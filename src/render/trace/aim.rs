@@ -206,18 +206,18 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let place = group.places.get(lane.min(group.len - 1));
         let trees = self.scratch.trees.as_ref().filter(|_| self.depth != 0);
         let Some((trees, place)) = trees.zip(place) else { return 1.0 };
-        let OpenRay { density: by_chance, chosen: (from, at), .. } = trees.wave[*place as usize];
+        let OpenRay { density: by_chance, chosen, since, .. } = trees.wave[*place as usize];
         if by_chance == f64::INFINITY {
             return 1.0;
         }
         let dir = group.dir.get(lane);
-        let distance = distance + (group.origin.get(lane) - at).length();
+        let (at, distance) = (group.origin.get(lane) - since * dir, distance + since);
         let lamp = self.plan.lamps.get(object).copied().flatten();
         let emitter = lamp.and_then(|lamp| self.model.lights[lamp].value.emitter());
         let by_aim = match (emitter, &self.plan.glow) {
             (Some(emitter), _) => emitter.density(at, dir, distance),
             (None, Some(glow)) => {
-                glow.density((object, normal, light), (Some(from as usize), at), dir, distance)
+                glow.density((object, normal, light), (Some(chosen as usize), at), dir, distance)
             }
             (None, None) => None,
         };

@@ -218,8 +218,22 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     _ => None,
                 };
                 let density = density.unwrap_or(f64::INFINITY);
-                let chosen = if is_unbent { before.chosen } else { (ray.object, ray.origin) };
-                let ray = OpenRay { weight, dir, side, kind, shows_patches, counted, density, chosen, ..ray };
+                let (chosen, since) = match is_unbent {
+                    true => (before.chosen, before.since + (ray.travelled - before.travelled)),
+                    false => (ray.object, 0.0),
+                };
+                let ray = OpenRay {
+                    weight,
+                    dir,
+                    side,
+                    kind,
+                    shows_patches,
+                    counted,
+                    density,
+                    chosen,
+                    since,
+                    ..ray
+                };
                 (weight != Rgb::ZERO).then_some(ray)
             };
             let goes_on = scatters && before.bounces < self.plan.camera.bounces;
@@ -230,13 +244,16 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     open(covered * kept * passed * diffuse.get(lane), dir, side, RayKind::Scattered)
                 })
                 .map(|ray| OpenRay { bounces: before.bounces + 1, ..ray });
-            let onward = [
-                onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted)),
-                open(covered * reflected, dir.get(lane), side, RayKind::Reflected),
-                scattered,
-                open(beyond, group.dir.get(lane), side.opposite(), RayKind::Transmitted),
-            ];
-            scratch.outcomes[place].onward = self.choose(&before, onward);
+            let rays = &mut scratch.outcomes[place].onward;
+            rays[0] = onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted));
+            rays[1] = open(covered * reflected, dir.get(lane), side, RayKind::Reflected);
+            if !covers_all {
+                rays[3] = open(beyond, group.dir.get(lane), side.opposite(), RayKind::Transmitted);
+            }
+            if self.plan.camera.bounces != 0 {
+                rays[2] = scattered;
+                self.choose(&before, rays);
+            }
         }
         self.scratch.trees = Some(scratch);
     }

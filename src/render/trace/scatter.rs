@@ -130,14 +130,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Chooses among the rays that continue from a hit, after `before` on their path. Behind a matt surface, one of them
     /// remains at most; before it, all but one that leaves a matt surface and is faint.
-    pub(super) fn choose(&mut self, before: &OpenRay, onward: [Option<OpenRay>; 4]) -> [Option<OpenRay>; 4] {
-        let [through, reflected, scattered, beyond] = onward;
-        let is_path = before.bounces != 0;
+    pub(super) fn choose(&mut self, before: &OpenRay, onward: &mut [Option<OpenRay>]) {
         let sample = self.scratch.samples.get(usize::from(before.camera));
-        let Some(sample) = sample.filter(|_| (is_path || scattered.is_some()) && !self.scratch.are_probes)
-        else {
-            return onward;
-        };
+        let scatters = onward.iter().flatten().any(|ray| ray.kind == RayKind::Scattered);
+        let is_by_chance = (before.bounces != 0 || scatters) && !self.scratch.are_probes;
+        let Some(sample) = sample.filter(|_| is_by_chance) else { return };
         let draw = sample.on_branching(before.depth);
         if self.scratch.path_hashes.is_on {
             self.scratch.path_hashes.see_facet(before.camera, draw);
@@ -148,20 +145,25 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let survives = (all / FAINT).min(1.0);
             (draw.y <= survives).then(|| OpenRay { weight: ray.weight / (chance * survives), ..ray })
         };
-        if !is_path {
-            let scattered = scattered.and_then(|ray| follow(ray, 1.0, weight(&ray)));
-            return [through, reflected, scattered, beyond];
+        if before.bounces == 0 {
+            for scattered in onward.iter_mut() {
+                *scattered = scattered.and_then(|ray| match ray.kind {
+                    RayKind::Scattered => follow(ray, 1.0, weight(&ray)),
+                    _ => Some(ray),
+                });
+            }
+            return;
         }
-        let all = || onward.into_iter().flatten();
-        let total: f64 = all().map(|ray| weight(&ray)).sum();
+        let total: f64 = onward.iter().flatten().map(weight).sum();
         let mut left = draw.x * total;
-        let chosen = all().find(|ray| {
+        let chosen = onward.iter().flatten().find(|ray| {
             left -= weight(ray);
             left <= 0.0
         });
         // The sum is rounded.
-        let chosen = chosen.or_else(|| all().last());
-        [chosen.and_then(|ray| follow(ray, weight(&ray) / total, total)), None, None, None]
+        let chosen = chosen.or_else(|| onward.iter().flatten().last()).copied();
+        onward.fill(None);
+        onward[0] = chosen.and_then(|ray| follow(ray, weight(&ray) / total, total));
     }
 
     /// Returns the direction in which the sample of a ray follows the light that reaches its hit, after `depth` rays

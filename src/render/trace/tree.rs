@@ -75,8 +75,10 @@ pub(super) struct OpenRay {
     /// The density of its direction, per unit of solid angle, if lamps are also met by aim from where it starts;
     /// infinite otherwise.
     pub density: f64,
-    /// Where its direction was chosen, by the object's index and the point: it has come from there unbent.
-    pub chosen: (u32, DVec3),
+    /// The index of the object where its direction was chosen, from where it has come unbent, and the distance from there
+    /// to its origin, in world units.
+    pub chosen: u32,
+    pub since: f64,
 }
 
 impl OpenRay {
@@ -114,7 +116,8 @@ impl OpenRay {
             bounces: 0,
             counted: CountedLight::All,
             density: f64::INFINITY,
-            chosen: (0, DVec3::ZERO),
+            chosen: 0,
+            since: 0.0,
         }
     }
 }
