@@ -69,7 +69,9 @@ inventory::submit! {
             let sorts = mesh::sorts(&surface, |slot| painted.material_of(slot, &own));
             sorted(args, &surface, sorts, &mut warnings, paint)
         };
-        let (files, bytes) = (surface.files.clone(), surface.bytes());
+        // The parts with different materials take as much memory again.
+        let bytes = if body.faces.is_empty() { surface.bytes() } else { 2 * surface.bytes() };
+        let files = surface.files.clone();
         Ok(Body { warnings, files, bytes, boundary: Some(Box::new(move || surface.boundary(accuracy))), ..body })
     })
     .known_as(&["obj", "stl", "ply", "gltf", "glb", "model", "trimesh"])

@@ -162,7 +162,7 @@ pub(super) fn body_of(mut solid: Solid, material: Option<Arc<Material>>) -> Resu
     let warning = with_faces.map(|part| Warning {
         attribute: "objects",
         message: format!("ignores the shininess and transparency of the faces of `{}`", part.name),
-        help: "a part of a solid has one material, and the colours of its faces: give it a `material`"
+        help: "a part of a solid has one material, and the colours of its faces: make the other faces a mesh of their own"
             .to_owned(),
     });
     let mut seen = seen(&solid).into_iter();
