@@ -55,7 +55,8 @@ impl Image {
 
     fn colour(&self, at: &SurfacePoint) -> Rgb {
         if self.texture.covers_in_part() {
-            return self.colour_by_alpha(at);
+            // The colour of the point, not a mean over a patch.
+            return self.texture.by_alpha(|texel| self.blend(self.place(at), texel));
         }
         if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {
             let size = self.size();
@@ -65,16 +66,6 @@ impl Image {
             }
         }
         self.blend(self.place(at), |column, row| self.texture.texel(column, row))
-    }
-
-    /// Returns the colour of a point, not a mean over a patch: texels count as much as they cover.
-    fn colour_by_alpha(&self, at: &SurfacePoint) -> Rgb {
-        let (place, covered) = (self.place(at), self.alpha(at));
-        let texel = |column, row| self.texture.texel(column, row);
-        if covered == 0.0 {
-            return self.blend(place, texel);
-        }
-        self.blend(place, |column, row| self.texture.alpha(column, row) * texel(column, row)) / covered
     }
 
     /// Returns what `of` returns for the texel at a place or, if colours are interpolated, a blend of four texels.

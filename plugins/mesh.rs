@@ -52,11 +52,14 @@ inventory::submit! {
         let (own, accuracy) = (args.material(), args.accuracy());
         let body = if surface.has_looks() {
             let finished = Finished::new(surface.clone());
-            // Where all is glass or metal, the file's materials give its colours alone.
-            let sorts = match own.interface {
-                None => mesh::sorts(&surface, |slot| finished.material(slot, &own, polish(args))),
-                Some(_) => Ok(Vec::new()),
-            };
+            let mut sorts = mesh::sorts(&surface, |slot| finished.material(slot, &own, polish(args)));
+            if own.interface.is_some() && sorts.as_ref().is_ok_and(|sorts| sorts.iter().any(|sort| sort.material != *own)) {
+                sorts = Err(Warning {
+                    attribute: "material",
+                    message: "is of glass, metal or plastic, so its file's materials give their colours alone".to_owned(),
+                    help: "a plain `material` leaves shininess and transparency to the file".to_owned(),
+                });
+            }
             sorted(args, &surface, sorts, &mut warnings, Finished::new)
         } else if surface.materials.is_empty() || args.setting.only_rays || args.get(&MATERIALS) == Materials::File {
             Body::plain(shape(&surface, accuracy))

@@ -348,7 +348,9 @@ fn objects(plan: &Plan) -> Vec<Decision> {
 
 /// Lists the first [`NAMED`] names, and how many more there are.
 fn some<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
-    let names: Vec<_> = names.into_iter().collect();
+    let mut names: Vec<_> = names.into_iter().collect();
+    // A solid, and a mesh of several materials, consists of objects of one name.
+    names.dedup();
     match names.len().checked_sub(NAMED) {
         Some(more) if more > 1 => format!("{} and {more} more", list(names[..NAMED].iter().copied())),
         _ => list(names),

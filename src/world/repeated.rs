@@ -19,17 +19,6 @@ impl Texture {
         row(0.0).lerp(row(1.0), part.y)
     }
 
-    /// Blends the light of the four texels around a place, each as much as it covers: those that cover nothing may have
-    /// any colour.
-    pub fn blended_by_alpha(&self, place: DVec2) -> DVec3 {
-        let covered = self.blended(place, |column, row| DVec3::splat(self.alpha(column, row))).x;
-        if covered > 0.0 {
-            self.blended(place, |column, row| self.alpha(column, row) * self.texel(column, row)) / covered
-        } else {
-            self.blended(place, |column, row| self.texel(column, row))
-        }
-    }
-
     /// Encloses the blends of the four texels around the places in a box, which are given as in
     /// [`blended`](Self::blended). `texel` returns the texel of any column and row. `None` if the box covers many
     /// texels.

@@ -197,6 +197,16 @@ impl Texture {
         self.load().map_or(1.0, |texels| texels.alpha(column, row))
     }
 
+    /// Blends the light of texels, each as much as it covers: those that cover nothing may have any colour. `blend`
+    /// returns the weighted mean of what a function returns for each texel by its column and its row.
+    pub fn by_alpha(&self, blend: impl Fn(&dyn Fn(u32, u32) -> DVec3) -> DVec3) -> Rgb {
+        let covered = blend(&|column, row| DVec3::splat(self.alpha(column, row))).x;
+        match covered > 0.0 {
+            true => blend(&|column, row| self.alpha(column, row) * self.texel(column, row)) / covered,
+            false => blend(&|column, row| self.texel(column, row)),
+        }
+    }
+
     /// Tells whether [`alpha`](Self::alpha) is below 1 anywhere.
     pub fn has_alpha(&self) -> bool {
         self.load().is_ok_and(Texels::has_alpha)

@@ -142,6 +142,14 @@ fn images_of_gltf_are_turned_and_wrapped_as_it_says() {
     bytes.extend(faces.iter().flat_map(|corner| corner.to_le_bytes()));
     fs::write(folder.path().join("square.bin"), bytes).expect("a file");
     let (red, green, blue, grey) = ([0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5], [0.25; 3]);
+    let coated = square("", "").replace(
+        r#"{"pbrMetallicRoughness""#,
+        r#"{"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 0}}},
+        "pbrMetallicRoughness""#,
+    );
+    fs::write(folder.path().join("square.gltf"), coated).expect("a file");
+    let (_, warnings) = read(folder.path(), "file square.gltf materials file");
+    assert!(warnings.contains("clearcoatTexture of KHR_materials_clearcoat"), "{warnings}");
     for (transform, sampler, upper, lower) in [
         ("", "", [red, green], [blue, grey]),
         // Texture coordinates turn counterclockwise, and so the image clockwise.
@@ -223,6 +231,14 @@ fn faces_of_two_materials_are_seen_as_two_meshes() {
     // By the file's, of which one covers nothing.
     let of_file = |name: &str| format!("mesh {name} {{ material own file {name}.obj materials file }} ");
     assert_eq!(picture(&of_file("files")), picture(&(of_file("red") + &of_file("clear"))));
+}
+
+#[test]
+fn what_a_mesh_of_glass_does_not_take_from_its_file_is_told() {
+    let folder = folder(&[("wall.obj", WALL), ("my looks.mtl", LOOKS), ("other.mtl", "")]);
+    let clear = "glass clear { } mesh other { material clear file wall.obj materials file }";
+    let (_, warnings) = read_with(folder.path(), clear, "file wall.obj");
+    assert!(warnings.contains("its file's materials give their colours alone"), "{warnings}");
 }
 
 #[test]

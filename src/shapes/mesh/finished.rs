@@ -115,7 +115,8 @@ impl Finished {
         if !covers_in_part || !map.texture.has_alpha() {
             return self.light(spot, Some(map), patch);
         }
-        self.place(spot, map, None).map_or(Rgb::ONE, |[place, _]| map.blended_by_alpha(place))
+        self.place(spot, map, None)
+            .map_or(Rgb::ONE, |[place, _]| map.texture.by_alpha(|texel| map.blended(place, texel)))
     }
 
     /// Returns the corner colours of a face, blended at a spot, or white if it has none.

@@ -77,17 +77,7 @@ impl Map {
 
     /// Returns a blend of the four texels around a place or, if texels are squares, the texel there.
     pub fn blended(&self, place: DVec2, texel: impl Fn(u32, u32) -> DVec3) -> DVec3 {
-        self.texture.blended(self.seen(place), texel)
-    }
-
-    /// Blends the light of the four texels around a place, each as much as it covers, as [`blended`](Self::blended) does.
-    pub fn blended_by_alpha(&self, place: DVec2) -> DVec3 {
-        self.texture.blended_by_alpha(self.seen(place))
-    }
-
-    /// Returns the place that is seen at a place.
-    fn seen(&self, place: DVec2) -> DVec2 {
-        if self.is_sharp { place.floor() + 0.5 } else { place }
+        self.texture.blended(if self.is_sharp { place.floor() + 0.5 } else { place }, texel)
     }
 }
 

@@ -113,6 +113,14 @@ impl Looks<'_> {
         for name in material.extensions.keys().filter(|name| !SHOWN.contains(&&name[..])) {
             hide(true, &text::abridged(name));
         }
+        let shown = material.extensions.iter().filter(|(name, _)| SHOWN.contains(&&name[..]));
+        for (name, extension) in shown.filter(|(name, _)| name[..] != *SPECULAR_GLOSSINESS) {
+            let keys = extension.as_object().into_iter().flat_map(|extension| extension.keys());
+            // Light passes through the triangles, however thick the file says that they are.
+            for key in keys.filter(|key| key.ends_with("Texture") && *key != "thicknessTexture") {
+                hide(true, &text::abridged(&format!("{key} of {name}")));
+            }
+        }
         let colour =
             |red: f64, green: f64, blue: f64| Rgb::new(red, green, blue).clamp(Rgb::ZERO, Rgb::splat(1e6));
         let strength = extension("KHR_materials_emissive_strength", "emissiveStrength").unwrap_or(1.0);
