@@ -11,23 +11,9 @@ pub struct Exact {
 impl Exact {
     /// Returns the exact sum of some numbers.
     pub fn sum(terms: impl IntoIterator<Item = f64>) -> Self {
-        let mut parts = Vec::with_capacity(16);
-        for term in terms {
-            let (mut carry, mut kept) = (term, 0);
-            for index in 0..parts.len() {
-                let (sum, low) = two_sum(carry, parts[index]);
-                if low != 0.0 {
-                    parts[kept] = low;
-                    kept += 1;
-                }
-                carry = sum;
-            }
-            parts.truncate(kept);
-            if carry != 0.0 {
-                parts.push(carry);
-            }
-        }
-        Self { parts }
+        let mut sum = Self { parts: Vec::with_capacity(16) };
+        sum.extend(terms);
+        sum
     }
 
     /// Returns the parts whose sum is the number.
@@ -44,6 +30,27 @@ impl Exact {
     /// Returns the number rounded once to a double-double.
     pub fn rounded(&self) -> DoubleDouble {
         self.parts.iter().rev().fold(DoubleDouble::from(0.0), |sum, part| sum + DoubleDouble::from(*part))
+    }
+}
+
+impl Extend<f64> for Exact {
+    fn extend<T: IntoIterator<Item = f64>>(&mut self, terms: T) {
+        let parts = &mut self.parts;
+        for term in terms {
+            let (mut carry, mut kept) = (term, 0);
+            for index in 0..parts.len() {
+                let (sum, low) = two_sum(carry, parts[index]);
+                if low != 0.0 {
+                    parts[kept] = low;
+                    kept += 1;
+                }
+                carry = sum;
+            }
+            parts.truncate(kept);
+            if carry != 0.0 {
+                parts.push(carry);
+            }
+        }
     }
 }
 

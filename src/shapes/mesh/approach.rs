@@ -1,8 +1,7 @@
 //! Rays from so far away that `f64` arithmetic cannot tell the faces of a mesh apart.
 
 use glam::DVec3;
-use std::iter;
-use tabray_exact::double_double::exact::exact_sum;
+use tabray_exact::double_double::exact::Exact;
 use tabray_exact::double_double::two_product;
 use tabray_exact::scalar::per_axis;
 use tabray_world::geometry::aabb::Aabb;
@@ -41,14 +40,15 @@ impl Approach {
             return Self::none(ray);
         }
         let (mut steps, mut at) = (Vec::new(), ray.origin);
+        let mut exactly = ray.origin.to_array().map(|part| Exact::sum([part]));
         // Each step leaves only the rounding error of the step before it. A ray that misses the box by far comes no
         // closer.
         loop {
-            steps.push(ray.dir.dot(middle - at) - 2.0 * size);
+            let step = ray.dir.dot(middle - at) - 2.0 * size;
+            steps.push(step);
             at = DVec3::from(per_axis(|axis| {
-                let products =
-                    steps.iter().flat_map(|step| <[f64; 2]>::from(two_product(*step, ray.dir[axis])));
-                exact_sum(iter::once(ray.origin[axis]).chain(products)).high
+                exactly[axis].extend(<[f64; 2]>::from(two_product(step, ray.dir[axis])));
+                exactly[axis].rounded().high
             }));
             // Products of numbers above 1e300 overflow.
             if !at.is_finite() {
