@@ -4,9 +4,13 @@ use super::patch::{Patches, Rectangle};
 use super::tree::Tree;
 use glam::{DVec2, DVec3};
 use tabray_world::coincidence::ROUNDING;
+use tabray_world::geometry::aabb::Aabb;
 
 /// The maximum number of Gauss-Newton steps.
 const STEPS: usize = 24;
+
+/// The distance, as a multiple of a surface's size, within which no part is nearer than others.
+const BLURRED: f64 = 4.0;
 
 /// A place on a surface.
 #[derive(Clone, Copy)]
@@ -30,9 +34,16 @@ impl Located<'_> {
         [16.0, 1e4, 1e9].into_iter().find_map(|times| self.nearest(at, times * error))
     }
 
-    /// Returns the place nearest to a point, among parts with boxes within a distance.
+    /// Returns the place nearest to a point, among parts with boxes within a distance. If that is many times the size of
+    /// the surface, the place is in the part whose middle is nearest.
     pub fn nearest(&self, at: DVec3, distance: f64) -> Option<Place> {
         let mut nearest: Option<Place> = None;
+        if self.tree.bounds().is_some_and(|Aabb { low, high }| distance > BLURRED * (high - low).length()) {
+            let off = |leaf: usize| (DVec3::from(self.tree.flat(leaf).middle) - at).length();
+            let leaf = (0..self.tree.leaf_count()).min_by(|one, other| off(*one).total_cmp(&off(*other)))?;
+            let (uv, off) = self.nearest_in(at, self.tree.leaf(leaf));
+            return (off <= 2.0 * distance).then_some(Place { uv, off });
+        }
         let is_near =
             |low: DVec3, high: DVec3| (low - distance).cmple(at).all() && at.cmple(high + distance).all();
         self.tree.visit(&|around| is_near(around.low, around.high), &mut |_, part, _| {

@@ -21,6 +21,13 @@ fn max_steps<F: Float>() -> usize {
     if F::IS_LONG { 1024 } else { 2304 }
 }
 
+/// The maximum number of steps for a line whose t are all one within its error: without an order, only a line with
+/// hardly a hit is decided, and that takes few steps.
+const FEW_STEPS: usize = 16;
+
+/// The maximum number of boxes that such a line is compared with. Where products overflow, it meets all.
+const FEW_BOXES: usize = 1024;
+
 /// The maximum width of the t of an undecided place at which the place counts as a hit, as a fraction of the
 /// coordinates.
 const NARROW: f64 = 1e-6;
@@ -103,13 +110,17 @@ where
 
     pub fn first(&self) -> Found<F> {
         // All parts would be tried: the numbers of such a line are too large for the box test in `f64`.
+        let mut blurred_from = None;
         if let Some(Aabb { low, high }) = self.shape.tree.bounds() {
             let nothing = Found { hit: None, undecided: None, narrow: None };
-            if self.line.clip(low, high).is_none() {
-                return nothing;
-            }
-            if let Some(entry) = self.line.blurred_entry(low, high) {
+            let Some((entry, is_blurred)) = self.line.blurred(low, high) else { return nothing };
+            let has_no_order = is_blurred[self.axes()[0]];
+            if is_blurred == [true; 3] || has_no_order && !self.line.is_exact() {
                 return Found { undecided: Some(entry), ..nothing };
+            }
+            if has_no_order {
+                self.steps_left.set(FEW_STEPS);
+                blurred_from = Some(entry);
             }
         }
         let (mut waiting, mut number) = (BinaryHeap::new(), 0);
@@ -117,7 +128,17 @@ where
         let line = Line { origin: self.line.origin.map(nearly), dir: self.line.dir.map(nearly) };
         let quick = Search::<f64>::new(self.shape, &line, &|_, _, _| false);
         let clip = |around: &Aabb| line.clip(around.low, around.high);
-        self.shape.tree.visit(&|around| clip(around).is_some(), &mut |leaf, part, around| {
+        let boxes_left = Cell::new(if blurred_from.is_some() {
+            quick.steps_left.set(8 * FEW_STEPS);
+            FEW_BOXES
+        } else {
+            usize::MAX
+        });
+        let meets = |around: &Aabb| {
+            boxes_left.set(boxes_left.get().saturating_sub(1));
+            boxes_left.get() > 0 && clip(around).is_some()
+        };
+        self.shape.tree.visit(&meets, &mut |leaf, part, around| {
             let is_free = !quick.may_meet(self.shape.tree.flat(leaf))
                 || F::IS_LONG && matches!(quick.judged(part), Judged::Free);
             if !is_free {
@@ -127,6 +148,9 @@ where
             }
         });
         let mut found = Found { hit: None, undecided: None, narrow: None };
+        if boxes_left.get() == 0 {
+            return Found { undecided: blurred_from, ..found };
+        }
         let mut left = (if F::IS_LONG { MAX_PATCHES / 32 } else { MAX_PATCHES }).max(2 * number);
         while let Some(Part { from, leaf, part, .. }) = waiting.pop() {
             // Nothing that waits comes before what is known, or may be a hit.

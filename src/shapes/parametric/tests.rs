@@ -81,3 +81,17 @@ fn a_ray_that_touches_a_surface_at_a_point_is_soon_answered() {
         assert!(!is_at_point || by_tracer < 1000, "{ray}: {by_tracer} evaluations");
     }
 }
+
+/// All parts are as near as any other to a point whose error is larger than the surface.
+#[test]
+fn a_point_that_may_be_anywhere_is_located_in_one_part() {
+    let counts: &'static [AtomicUsize; 2] = Box::leak(Box::default());
+    let patches: Box<dyn Patches> = Box::new(Torus { ends: ENDS[0], counts });
+    let tree = Tree::new(&*patches, ENDS[0]);
+    let shape = ParametricShape { bounds: tree.bounds().expect("a box"), patches, tree };
+    counts[0].store(0, Ordering::Relaxed);
+    assert!(shape.is_near(DVec3::new(1e60, -9.0, 0.0), 1e60));
+    assert!(!shape.is_near(DVec3::new(1e60, -9.0, 0.0), 1e50));
+    let count = counts[0].load(Ordering::Relaxed);
+    assert!(count < 100, "{count} evaluations");
+}

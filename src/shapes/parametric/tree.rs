@@ -80,6 +80,11 @@ impl Tree {
         }
     }
 
+    /// Returns the number of leaves.
+    pub fn leaf_count(&self) -> usize {
+        self.leaves.len()
+    }
+
     /// Returns the leaf with an index.
     pub fn leaf(&self, index: usize) -> &Rectangle<f64> {
         &self.leaves[index]

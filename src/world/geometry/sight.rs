@@ -90,11 +90,18 @@ impl<F: Float> Line<Interval<F>> {
     /// Returns the t at which the line may enter a box where the line's error is larger than the box on each axis:
     /// nothing in the box can be told from anything else.
     pub fn blurred_entry(&self, low: DVec3, high: DVec3) -> Option<F> {
+        let (entry, is_blurred) = self.blurred(low, high)?;
+        (is_blurred == [true; 3]).then_some(entry)
+    }
+
+    /// Returns the t at which the line may enter a box, and tells for each axis whether the line's error there is larger
+    /// than the box.
+    pub fn blurred(&self, low: DVec3, high: DVec3) -> Option<(F, [bool; 3])> {
         let (entry, _) = self.clip(low, high)?;
         let at = self.at(Interval::point(entry));
         // False for NaN, where products overflow.
         let is_sharp = |axis: usize| at[axis].width() <= F::of(high[axis]) - F::of(low[axis]);
-        (!(0..3).any(is_sharp)).then_some(entry)
+        Some((entry, per_axis(|axis| !is_sharp(axis))))
     }
 }
 
