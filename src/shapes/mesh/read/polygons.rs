@@ -13,8 +13,8 @@ const FLAT: f64 = 0.1;
 /// The tolerance for an edge that turns to the wrong side, as a fraction of the product of two edges.
 const STRAIGHT: f64 = 1e-9;
 
-/// The maximum number of pairs of corners of concave polygons in a file. Cutting these takes up to ten seconds.
-const MAX_PAIRS: u64 = 1 << 32;
+/// The maximum number of pairs of corners of concave polygons in a file. Cutting these takes up to five seconds.
+const MAX_PAIRS: u64 = 1 << 30;
 
 /// The faces of a file that are not triangles.
 #[derive(Default)]
@@ -70,16 +70,17 @@ impl Polygons {
         };
         let found = parallel::map_ranges(self.fans.len(), 2, &|range| range.filter_map(find).collect());
         let bent = found.iter().filter(|found| found.is_bent).count();
-        let mut left = MAX_PAIRS;
+        let (mut left, mut uncut) = (MAX_PAIRS, 0);
         let dented: Vec<_> = found
             .into_iter()
             .filter_map(|found| Some((found.polygon, found.dented?)))
             .filter(|(_, flat)| {
-                let pairs = (flat.len() as u64).pow(2);
-                pairs <= left && {
-                    left -= pairs;
-                    true
+                let after = left.checked_sub((flat.len() as u64).pow(2));
+                match after {
+                    Some(after) => left = after,
+                    None => uncut += 1,
                 }
+                after.is_some()
             })
             .collect();
         let anew = parallel::map(dented.len(), |index| cut(&dented[index].1));
@@ -107,6 +108,15 @@ impl Polygons {
                     text::count(self.short, "face")
                 ),
                 help: "such a face is a point or a line: no ray hits it",
+            });
+        }
+        if uncut > 0 {
+            model.remarks.push(Remark {
+                message: format!(
+                    "has {} with too many corners to be cut",
+                    text::count(uncut, "concave polygon")
+                ),
+                help: "it is shown as if it were convex; cut it into smaller ones",
             });
         }
         if bent > 0 {
