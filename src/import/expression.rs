@@ -43,8 +43,8 @@ impl Value {
     }
 
     /// Returns the formula, in parentheses if its precedence is lower.
-    fn within(&self, level: Level) -> String {
-        if self.level < level { format!("({})", self.text) } else { self.text.clone() }
+    fn within(self, level: Level) -> String {
+        if self.level < level { format!("({})", self.text) } else { self.text }
     }
 }
 
@@ -203,12 +203,6 @@ impl Reader<'_, '_> {
             Level::Product => (Level::Product, Level::Power),
             _ => (Level::Atom, Level::Atom),
         };
-        let text = format!("{}{sign}{}", one.within(left), other.within(right));
-        if text.len() > LONGEST {
-            return Err(self
-                .fault_here(&format!("written out, the formula has more than {LONGEST} letters"))
-                .into());
-        }
         let number = one.number.zip(other.number).map(|(one, other)| match sign.trim() {
             "+" => one + other,
             "-" => one - other,
@@ -216,6 +210,14 @@ impl Reader<'_, '_> {
             "/" => one / other,
             _ => libm::pow(one, other),
         });
+        let mut text = one.within(left);
+        text += sign;
+        text += &other.within(right);
+        if text.len() > LONGEST {
+            return Err(self
+                .fault_here(&format!("written out, the formula has more than {LONGEST} letters"))
+                .into());
+        }
         Ok(Value::of(text, level, number))
     }
 
@@ -282,11 +284,8 @@ impl Reader<'_, '_> {
 
     fn negative(&mut self, value: Value) -> Value {
         let value = self.done(value);
-        Value::of(
-            format!("-{}", value.within(Level::Product)),
-            Level::Sum,
-            value.number.map(|number| -number),
-        )
+        let number = value.number.map(|number| -number);
+        Value::of(format!("-{}", value.within(Level::Product)), Level::Sum, number)
     }
 
     fn atom(&mut self) -> Read<Value> {

@@ -263,3 +263,23 @@ fn a_script_that_multiplies_ends() {
     let report = scene("a.surf", script.as_bytes()).map(|_| ()).expect_err("the formula is too long");
     assert!(report.short().contains("has more than 1048576 letters"), "{}", report.short());
 }
+
+#[test]
+fn a_script_of_many_sums_of_others_ends() {
+    let mut script = "poly p0 = x;".to_owned();
+    for index in 1..6000 {
+        script += &format!("poly p{index} = p{} + y + y + y + y + y + y + y + y;", index - 1);
+    }
+    script += "surface = p1; draw_surface;";
+    let report = scene("a.surf", script.as_bytes()).map(|_| ()).expect_err("they are too long");
+    assert!(report.short().contains("have more than 67108864 letters together"), "{}", report.short());
+}
+
+#[test]
+fn each_value_of_a_variable_has_its_own_name() {
+    let script = "double a = 2; a = 3; double a_2 = 4; a = 5; surface = a*x + a_2; draw_surface;";
+    let (text, ..) = imported("a.surf", script);
+    for line in ["let a_2_2 4", "let a_3 5", "a_3*x + a_2_2"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+}

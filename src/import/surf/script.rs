@@ -2,7 +2,7 @@
 
 use crate::expression::{self, Dialect, Names, Value};
 use crate::notes::Notes;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use tabray_exact::formula::is_taken;
 use tabray_lang::reader::Fault;
@@ -65,44 +65,64 @@ pub fn without_comments(text: &str) -> String {
     String::from_utf8(bytes).unwrap_or_default()
 }
 
+/// The maximum length of all of a script's formulas together, in bytes, with the names of others written out.
+const LONGEST: usize = 1 << 26;
+
 /// The variables of a script.
 #[derive(Default)]
 pub struct Scope {
-    variables: Vec<(String, Value)>,
+    variables: BTreeMap<String, Value>,
+    /// The length of the formulas of all variables together.
+    length: usize,
     /// The numbers and functions of the scene, by their names there, with their formulas.
     pub numbers: Vec<(String, String)>,
     pub functions: Vec<(String, String)>,
+    /// The names of both.
+    names: BTreeSet<String>,
+    /// The number that a name with a number was last given.
+    last: BTreeMap<String, usize>,
 }
 
 impl Scope {
-    /// Returns an unused name for the scene.
-    fn free(&self, name: &str) -> String {
-        let is_free = |name: &str| {
-            let known = self.numbers.iter().chain(&self.functions);
-            !is_taken(name)
-                && name.starts_with(|c: char| c.is_ascii_alphabetic())
-                && known.clone().all(|(known, _)| known != name)
-        };
+    /// Returns an unused name for the scene, which is used from now on.
+    fn free(&mut self, name: &str) -> String {
         let name = if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
             name.to_owned()
         } else {
             format!("n{name}")
         };
-        let numbered = (2..).map(|number| format!("{name}_{number}"));
-        [name.clone()].into_iter().chain(numbered).find(|name| is_free(name)).unwrap_or(name)
+        let is_free = |free: &String| !is_taken(free) && !self.names.contains(free);
+        let first = self.last.get(&name).map_or(2, |last| last + 1);
+        let mut numbered = (first..).map(|number| (format!("{name}_{number}"), number));
+        let free = match Some(name.clone()).filter(is_free) {
+            Some(free) => free,
+            None => {
+                let (free, number) =
+                    numbered.find(|(free, _)| is_free(free)).unwrap_or((name.clone(), first));
+                self.last.insert(name, number);
+                free
+            }
+        };
+        self.names.insert(free.clone());
+        free
     }
 
-    fn set(&mut self, name: &str, value: Value) {
-        match self.variables.iter_mut().find(|(known, _)| known == name) {
-            Some((_, known)) => *known = value,
-            None => self.variables.push((name.to_owned(), value)),
+    /// Gives a variable its value; returns whether there is room for it.
+    fn set(&mut self, name: &str, value: Value) -> bool {
+        let before = self.variables.get(name).map_or(0, |known| known.text.len());
+        let length = self.length - before + value.text.len();
+        if length > LONGEST {
+            return false;
         }
+        self.length = length;
+        self.variables.insert(name.to_owned(), value);
+        true
     }
 }
 
 impl Names for Scope {
     fn value(&self, name: &str) -> Option<Value> {
-        self.variables.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone())
+        self.variables.get(name).cloned()
     }
 
     fn function(&mut self, formula: &str) -> String {
@@ -264,9 +284,7 @@ impl Script<'_, '_> {
                 return;
             }
             // `a = a` does not define another number.
-            Some(number)
-                if !is_surface && !self.scope.numbers.iter().any(|(known, _)| *known == value.text) =>
-            {
+            Some(number) if !is_surface && !self.scope.names.contains(&value.text) => {
                 let ours = self.scope.free(name);
                 self.scope.numbers.push((ours.clone(), value.text));
                 Value::named(&ours, number)
@@ -277,9 +295,12 @@ impl Script<'_, '_> {
             _ => value,
         };
         if is_surface {
-            self.settings.insert(name.to_owned(), (0.0, place));
+            self.settings.insert(name.to_owned(), (0.0, place.clone()));
         }
-        self.scope.set(name, value);
+        if !self.scope.set(name, value) {
+            let message = format!("written out, the formulas have more than {LONGEST} letters together");
+            self.notes.add(Fault::error(Some(place), message).help("leave out those that no surface needs"));
+        }
     }
 }
 
