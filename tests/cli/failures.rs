@@ -117,6 +117,13 @@ fn standard_output_that_is_closed_is_a_failure() {
     }
 }
 
+/// Many programs start others with such an output, to be rid of what they say.
+#[test]
+fn a_null_device_that_is_open_for_reading_too_is_no_closed_output() {
+    let folder = workplace();
+    assert_eq!(outcome(&mut after("exec 1<> /dev/null", &folder, &["dump", "ball.ray"])), (0, String::new()));
+}
+
 #[test]
 fn an_image_does_not_replace_what_it_is_made_from() {
     let folder = workplace();

@@ -1,6 +1,9 @@
 //! Standard output, which may have been closed before the program began.
 
+#[cfg(unix)]
+use std::fs;
 use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Standard output. Writing to one that was closed is an error.
 pub struct StandardOutput;
@@ -18,25 +21,29 @@ impl Write for StandardOutput {
     }
 }
 
-/// Tells whether standard output was closed when the program began. Rust's runtime then opens `/dev/null` in its place, for
-/// reading too, which a shell's `> /dev/null` does not.
-#[cfg(unix)]
+/// Tells whether standard output was closed when the program began.
 fn was_closed() -> bool {
-    use nix::fcntl::{FcntlArg, OFlag, fcntl};
-    use nix::sys::stat::{fstat, stat};
-    use std::sync::OnceLock;
-    static WAS_CLOSED: OnceLock<bool> = OnceLock::new();
-    *WAS_CLOSED.get_or_init(|| {
-        let out = io::stdout();
-        let mode =
-            fcntl(&out, FcntlArg::F_GETFL).map(|flags| OFlag::from_bits_truncate(flags) & OFlag::O_ACCMODE);
-        let is_null =
-            || matches!((fstat(&out), stat("/dev/null")), (Ok(out), Ok(null)) if out.st_rdev == null.st_rdev);
-        mode == Ok(OFlag::O_RDWR) && is_null()
-    })
+    WAS_CLOSED.load(Ordering::Relaxed)
 }
 
-#[cfg(not(unix))]
-fn was_closed() -> bool {
-    false
+static WAS_CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// What looks at standard output before `main`. There, Rust's runtime opens `/dev/null` in place of an output that was closed,
+/// and no one can tell that from a `/dev/null` that the caller opened.
+#[cfg(unix)]
+struct BeforeMain;
+
+/// Constructors ask for the registry, and thus run this.
+#[cfg(unix)]
+impl inventory::Collect for BeforeMain {
+    fn registry() -> &'static inventory::Registry {
+        static REGISTRY: inventory::Registry = inventory::Registry::new();
+        // Where no such folder is, nothing is known.
+        let exists = |path: &str| fs::symlink_metadata(path).is_ok();
+        WAS_CLOSED.store(exists("/dev/fd") && !exists("/dev/fd/1"), Ordering::Relaxed);
+        &REGISTRY
+    }
 }
+
+#[cfg(unix)]
+inventory::submit! { BeforeMain }
