@@ -2,6 +2,7 @@
 
 use tabray_exact::scalar::Scalar;
 use tabray_world::display::Display;
+use tabray_world::material::Rgb;
 use tabray_world::simd::cpu::{Cpu, kernels};
 use tabray_world::simd::soa::View;
 
@@ -20,17 +21,7 @@ pub fn to_byte(channel: f64) -> u8 {
 /// Converts colours to the bytes that show them.
 pub(crate) fn to_bytes(cpu: Cpu, display: &Display, colours: View, pixels: &mut [[u8; 3]]) {
     let Some(gain) = display.truncates() else {
-        // Much of an image is of one colour.
-        let mut last = None;
-        for (index, pixel) in pixels.iter_mut().enumerate() {
-            let colour = colours.get(index);
-            *pixel = match last {
-                Some((same, bytes)) if same == colour => bytes,
-                _ => display.bytes(colour),
-            };
-            last = Some((colour, *pixel));
-        }
-        return;
+        return to_bytes_of_runs(cpu, display, colours, pixels);
     };
     const CHUNK: usize = 64;
     let mut packed = [0; CHUNK];
@@ -48,6 +39,53 @@ pub(crate) fn to_bytes(cpu: Cpu, display: &Display, colours: View, pixels: &mut 
         for (pixel, packed) in rest.iter_mut().zip(packed_rest) {
             let [red, green, blue, ..] = packed.to_le_bytes();
             *pixel = [red, green, blue];
+        }
+    }
+}
+
+/// The number of colours that are compared at once.
+const RUN: usize = 16;
+
+/// Converts colours to bytes one by one. Much of an image is of one colour, which is converted once.
+fn to_bytes_of_runs(cpu: Cpu, display: &Display, colours: View, pixels: &mut [[u8; 3]]) {
+    const RUNS: usize = 16;
+    let mut last = None;
+    let mut bytes_of = |colour: Rgb| match last {
+        Some((same, bytes)) if same == colour => bytes,
+        _ => {
+            let bytes = display.bytes(colour);
+            last = Some((colour, bytes));
+            bytes
+        }
+    };
+    let mut differ = [0; RUNS];
+    for (pixels, first) in pixels.chunks_mut(RUN * RUNS).zip((0..).step_by(RUN * RUNS)) {
+        let colours = colours.part(first..first + pixels.len());
+        compare(cpu, colours, &mut differ[..pixels.len() / RUN]);
+        for (run, (pixels, first)) in pixels.chunks_mut(RUN).zip((0..).step_by(RUN)).enumerate() {
+            if pixels.len() == RUN && differ[run] == 0 {
+                pixels.fill(bytes_of(colours.get(first)));
+            } else {
+                let colours = (first..).map(|index| colours.get(index));
+                pixels.iter_mut().zip(colours).for_each(|(pixel, colour)| *pixel = bytes_of(colour));
+            }
+        }
+    }
+}
+
+kernels! {
+    /// Tells of each whole run of colours whether one differs from its first, as a NaN does: then a number is not 0.
+    fn compare(colours: View, differ: &mut [u64]) {
+        let View { x, y, z } = colours;
+        let whole = RUN * differ.len();
+        let runs = x[..whole].as_chunks::<RUN>().0.iter().zip(y[..whole].as_chunks::<RUN>().0);
+        for (differ, ((x, y), z)) in differ.iter_mut().zip(runs.zip(z[..whole].as_chunks::<RUN>().0)) {
+            let mut any = 0;
+            for lane in 0..RUN {
+                let is_same = (x[lane] == x[0]) & (y[lane] == y[0]) & (z[lane] == z[0]);
+                any |= u64::from(!is_same);
+            }
+            *differ = any;
         }
     }
 }
@@ -85,6 +123,7 @@ kernels! {
 mod tests {
     use super::*;
     use glam::DVec3;
+    use std::iter;
     use tabray_world::display::{Tone, Transfer};
     use tabray_world::rules::Rules;
 
@@ -94,7 +133,10 @@ mod tests {
         let extremes = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -1e-300, 1e-300, 1.0, 1e300];
         let levels = (0..=256).map(|level| f64::from(level) / 255.0);
         let near = levels.flat_map(|level| [level.next_down(), level, level.next_up()]);
-        let channel: Vec<f64> = extremes.into_iter().chain(near).collect();
+        // Whole runs of one colour, and those that begin or end in one.
+        let even = [(0.0, 50), (f64::NAN, 20), (0.25, 39)];
+        let even = even.into_iter().flat_map(|(channel, count)| iter::repeat_n(channel, count));
+        let channel: Vec<f64> = extremes.into_iter().chain(even).chain(near).collect();
         for cpu in Cpu::all() {
             for display in
                 [notes(0.0), notes(0.7), Display::new(Rules::Free, 0.7, Tone::Neutral, Transfer::Srgb)]

@@ -65,12 +65,16 @@ pub(super) struct RayGroup {
 impl RayGroup {
     /// Becomes these rays, at least one.
     pub fn become_sights(&mut self, sights: &[Sight], depth: Option<&Depth>) {
-        self.begin(sights[0].ray().origin, sights.len(), true, depth);
+        let mut last = sights[0].ray();
+        self.begin(last.origin, sights.len(), true, depth);
         let count = self.padded();
         let (mut origins, mut dirs) = (self.origin.resized(count), self.dir.resized(count));
         for lane in 0..count {
             // The last ray fills the rest of the arrays.
-            let Ray { origin, dir } = sights[lane.min(sights.len() - 1)].ray();
+            if 0 < lane && lane < sights.len() {
+                last = sights[lane].ray();
+            }
+            let Ray { origin, dir } = last;
             self.is_from_one &= origin == origins.get(0) || lane == 0;
             origins.set(lane, origin);
             dirs.set(lane, dir);
