@@ -7,6 +7,7 @@ pub mod contract;
 pub mod debug;
 pub mod diagnosis;
 pub mod identity;
+pub mod off_surface;
 pub mod pixels;
 pub mod probe;
 pub mod sampling;

@@ -382,14 +382,14 @@ mod tests {
 
     #[test]
     fn hits_that_are_not_checked_are_not_praised() {
-        let unchecked = vec![Unchecked { of: "ring", hits: 9, differ: 2, most: 0.5 }];
+        let unchecked = vec![Unchecked { of: "ring", has_equation: false, hits: 9, differ: 2, most: 0.5 }];
         let mut chart = Chart { unchecked, ..chart(2.0) };
         let right =
             Point { visible: Some(0.0), samples: 4, ..point("sobol 4", Family::Sobol, (4.0, 1e-3), 0, 0) };
         chart.panels.push(panel("samples", Subject::Samples, vec![right]));
         let text = words(&chart);
-        let advice = "What to do:\n  not checked: `ring` has no equation; 2 of 9 hits differ from those of rays that start nearer or \
-                      come back, by up to 0.5 world units\n\n";
+        let advice = "What to do:\n  not checked: `ring` has no equation; 2 of 9 hits differ from those of rays beside them, that \
+                      start nearer or come back, by up to 0.5 world units\n\n";
         assert!(text.starts_with(advice), "{text}");
     }
 

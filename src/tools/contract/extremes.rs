@@ -2,7 +2,7 @@
 //! cuts off. What is inside of a shape is told by its equation alone, which knows no box.
 
 use super::promise::{Fault, Promise};
-use super::shape::{RayTrial, describe_ray};
+use super::shape::{RayTrial, describe_ray, in_range};
 use glam::{DVec2, DVec3};
 use tabray_core::geometry::aabb::Aabb;
 use tabray_core::geometry::ray::{MISS, Ray, RayRange};
@@ -47,8 +47,7 @@ pub fn try_objects(objects: &[Object]) -> Result<(), Fault> {
             for dir in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
                 let ray = Ray { origin: aim - (1.5 * length + 1.0) * dir, dir };
                 let tried = RayTrial { shape, ray, is_exact: true };
-                tried.check_speed()?;
-                let distance = tried.distance_in_range(&ray, &RayRange::ALL)?;
+                let distance = in_range(tried.distance_in_time()?, &ray, &RayRange::ALL)?;
                 if distance < MISS {
                     tried.check_bounds(ray.at(distance))?;
                 }
@@ -76,9 +75,9 @@ fn extreme(shape: &AnyShape, middle: DVec3, half: DVec3, (axis, side): (usize, f
         let origin = on_side(part) + (half.max_element() + 1.0) * outward;
         RayTrial { shape, ray: Ray { origin, dir: -outward }, is_exact: true }.distance_in_time()
     };
-    let Some(proven) = of_closed(shape) else { return Ok(on_side(least(depth)?)) };
+    let Some(proven) = of_closed(shape) else { return Ok(on_side(least(depth, 1e-4)?)) };
     let value = |part: DVec2| value(proven, constants(on_side(part)));
-    let at = least(|part| Ok(value(part).middle()))?;
+    let at = least(|part| Ok(value(part).middle()), 1e-9)?;
     // The bounds may be off by rounding.
     let beyond = on_side(at) + 1e-9 * (middle.abs() + half).max_element() * outward;
     if self::value(proven, constants(beyond)).high < 0.0 {
@@ -125,8 +124,8 @@ fn value(proven: &dyn ProofMethods, at: [Interval; 3]) -> Interval {
 }
 
 /// Returns where a function on the square from -1 to 1 is least, or nearly so: the best place of a grid, improved by
-/// smaller and smaller steps.
-fn least(of: impl Fn(DVec2) -> Result<f64, Fault>) -> Result<DVec2, Fault> {
+/// smaller and smaller steps down to the last. On a smooth surface, the least value changes by the square of a step.
+fn least(of: impl Fn(DVec2) -> Result<f64, Fault>, last: f64) -> Result<DVec2, Fault> {
     let (mut best, mut at) = (MISS, DVec2::ZERO);
     let mut try_place = |place: DVec2| {
         let value = of(place)?;
@@ -142,7 +141,7 @@ fn least(of: impl Fn(DVec2) -> Result<f64, Fault>) -> Result<DVec2, Fault> {
         middle = try_place(place)?.unwrap_or(middle);
     }
     let mut step = 0.2;
-    while step > 1e-9 {
+    while step > last {
         let mut next = None;
         for aside in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
             let place = middle + step * aside;

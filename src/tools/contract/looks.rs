@@ -33,16 +33,15 @@ use tabray_lang::syntax::Syntax;
 /// The number of points at which lights and procedural shaders are evaluated.
 const PLACES: usize = 100;
 
-/// Checks that a dumped scene loads again, in either syntax.
-pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fault> {
-    for (syntax, name) in [(Syntax::Notes, "dump.ray"), (Syntax::Toml, "dump.toml")] {
-        let text = dump::scene(model, syntax);
-        let fault = |found: String| Promise::DumpLoadsAgain.fault(found);
-        let again = reader::read(registry, name, folder, text.as_bytes(), None);
-        let again = again.map_err(|report| fault(report.to_string()))?.model;
-        if dump::scene(&again, syntax) != text || dump::notes(&again) != dump::notes(model) {
-            return Err(fault(format!("the dump is different, of\n{text}")));
-        }
+/// Checks that a dumped scene loads again, in a syntax.
+pub fn dump(registry: &Registry, folder: &Path, model: &Model, syntax: Syntax) -> Result<(), Fault> {
+    let name = if syntax == Syntax::Notes { "dump.ray" } else { "dump.toml" };
+    let text = dump::scene(model, syntax);
+    let fault = |found: String| Promise::DumpLoadsAgain.fault(found);
+    let again = reader::read(registry, name, folder, text.as_bytes(), None);
+    let again = again.map_err(|report| fault(report.to_string()))?.model;
+    if dump::scene(&again, syntax) != text || dump::notes(&again) != dump::notes(model) {
+        return Err(fault(format!("the dump is different, of\n{text}")));
     }
     Ok(())
 }

@@ -34,8 +34,10 @@ use tabray_lang::reader;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// The number of scenes that are drawn for an entity type.
+/// The number of scenes that are drawn for an entity type, and the number of them in place of which one with costly shapes
+/// is drawn: these have a method in common, which all types with it try.
 const SCENES: usize = 24;
+const COSTLY: usize = 4;
 
 /// One of this many scenes is also tried at its objects' extremes.
 const EXTREMES: usize = 8;
@@ -192,17 +194,24 @@ fn of_entity(
 ) -> Option<Breach> {
     let mut draw = Draw::new(entity.name);
     let (mut gravest, mut refused, mut models, mut hits): (Option<Breach>, _, _, _) = (None, None, 0, 0);
-    let mut seen = String::new();
-    for index in 0..SCENES {
+    let (mut seen, mut spent, mut tried_extremes) = (String::new(), 0, 0);
+    for index in 0.. {
+        if spent >= SCENES {
+            break;
+        }
         let text = draw.scene(registry, entity, stand_ins);
         let accuracy = if index % 4 == 3 { Accuracy::Strict } else { Accuracy::Exact };
         let model = match reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy)) {
             Ok(loaded) => loaded.model,
             Err(report) => {
                 refused.get_or_insert_with(|| (report.to_string(), text));
+                spent += 1;
                 continue;
             }
         };
+        let tries_extremes = entity.kind() == Kind::Object && spent >= EXTREMES * tried_extremes;
+        let is_costly = model.objects.iter().any(|object| object.shape.facts().may_be_costly);
+        spent += if is_costly { COSTLY } else { 1 };
         models += 1;
         let tried = match entity.kind() {
             Kind::Camera => cameras::camera(&model.camera.value),
@@ -221,7 +230,8 @@ fn of_entity(
                 outcome.gravest.map_or(Ok(()), Err)
             }),
         };
-        if let Err(fault) = looks::dump(registry, scenes.folder(), &model).and(tried) {
+        let syntax = if index % 2 == 0 { Syntax::Notes } else { Syntax::Toml };
+        if let Err(fault) = looks::dump(registry, scenes.folder(), &model, syntax).and(tried) {
             let ends = fault.promise == Promise::RayIsQuick;
             if gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise) {
                 gravest = Some(breach(entity, fault, text.clone()));
@@ -231,9 +241,10 @@ fn of_entity(
                 break;
             }
         }
-        if entity.kind() == Kind::Object && index % EXTREMES == 0 {
+        if tries_extremes {
             // An object may have no inside, or there may be no copies.
-            let extra = extremes::VARIANTS[index / EXTREMES % extremes::VARIANTS.len()];
+            let extra = extremes::VARIANTS[tried_extremes % extremes::VARIANTS.len()];
+            tried_extremes += 1;
             let with_copy = format!("{text}{extra}\n");
             let read = |text: &str| {
                 reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy))

@@ -3,7 +3,7 @@
 use super::draw::Draw;
 use super::looks::shader;
 use super::promise::{Fault, Promise};
-use super::shape::{GRAZING, RayTrial};
+use super::shape::{GRAZING, RayTrial, in_range};
 use glam::DVec3;
 use tabray_core::geometry::ray::{MISS, Ray, RayRange, Side};
 use tabray_core::scene::model::Object;
@@ -91,8 +91,7 @@ fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
 
 /// Checks a shape with one ray, the given number of its rays; returns the point of the hit, if there is one.
 fn try_ray(tried: &RayTrial, number: usize, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
-    tried.check_speed()?;
-    let distance = tried.distance_in_range(&tried.ray, &RayRange::ALL)?;
+    let distance = in_range(tried.distance_in_time()?, &tried.ray, &RayRange::ALL)?;
     tried.check_repeats(distance)?;
     let levels: Vec<_> = Cpu::all().collect();
     tried.check_packets(distance, levels[number % levels.len()])?;
@@ -109,6 +108,7 @@ fn try_ray(tried: &RayTrial, number: usize, draw: &mut Draw) -> Result<Option<DV
         tried.check_from_elsewhere(&met, draw)?;
     }
     if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
+        tried.check_off(&tried.ray, distance)?;
         tried.check_from_afar(&met)?;
         tried.check_normal(&met)?;
         if !tried.shape.can_hit_itself(Side::Outside) {

@@ -84,6 +84,7 @@ impl RayTrial<'_> {
                 false => Ok(()),
             };
         }
+        self.check_off(&far, found)?;
         let (_, near) = from_before(far.at(found), 1.0)?;
         let off = (near - 1.0).abs();
         if off > tolerance {
