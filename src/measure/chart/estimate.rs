@@ -393,7 +393,11 @@ impl Study<'_> {
             for ((index, plan), estimates) in self.kept.clone().iter().zip(&mut plans).zip(of_accuracy) {
                 self.refine(*index, estimates, plan, progress);
             }
-            let small = Small { pixels: missed.pixels.len(), missed: missed.error(all) };
+            let small = Small {
+                pixels: missed.pixels.len(),
+                missed: missed.error(all),
+                is_left_out: small.is_left_out(),
+            };
             let is_short = pixels.is_short;
             return Ok(Estimates { all: estimates, own: own.0, pixels: all, small, against, is_short });
         }

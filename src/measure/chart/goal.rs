@@ -63,6 +63,8 @@ pub struct Small {
     pub pixels: usize,
     /// The part of all bounds that is due to things missed in these pixels, where 1 is white.
     pub missed: f64,
+    /// Whether so many pixels may show them that none was looked for.
+    pub is_left_out: bool,
 }
 
 /// Estimates, and the measurements behind them.

@@ -73,6 +73,7 @@ pub(super) struct SmallThings {
     pixels: Vec<SmallPixel>,
     display: Display,
     is_measured: bool,
+    is_left_out: bool,
 }
 
 /// Bounds on things missed in the pixels that may show something small.
@@ -95,7 +96,7 @@ impl Missed {
 impl SmallThings {
     /// Returns an empty set, for images with this display.
     pub fn none(display: Display) -> Self {
-        Self { pixels: Vec::new(), display, is_measured: true }
+        Self { pixels: Vec::new(), display, is_measured: true, is_left_out: false }
     }
 
     /// Finds the pixels of a plan's image with things that together change the image by more than an error. `samples`
@@ -143,7 +144,7 @@ impl SmallThings {
             }
             let is_first = rest.len() == squares.len();
             if !is_certain && is_first && TOO_MANY * whole.len() > part.len() * SQUARE * SQUARE {
-                return Ok(found);
+                return Ok(Self { is_left_out: true, ..found });
             }
             if progress.done(0).is_break() {
                 return Err(io::ErrorKind::Interrupted.into());
@@ -171,6 +172,11 @@ impl SmallThings {
     /// Tells whether the right colours are known.
     pub fn is_measured(&self) -> bool {
         self.is_measured
+    }
+
+    /// Tells whether so many pixels may show something small that none was looked for.
+    pub fn is_left_out(&self) -> bool {
+        self.is_left_out
     }
 
     /// Takes samples until the missed light is a small part of an error, or more than a greatest number is to be taken.

@@ -181,7 +181,7 @@ impl<'e> Selection<'e> {
                 Goal::Error { most, .. }
                     if self.is_certain && self.estimates.all.iter().any(|one| self.is_hidden(one, most)) =>
                 {
-                    let Small { pixels, missed } = self.estimates.small;
+                    let Small { pixels, missed, .. } = self.estimates.small;
                     format!(
                         "no promise: {pixels} pixels may show things smaller than a sample, and missing these may add {}",
                         levels(missed)
@@ -235,6 +235,11 @@ impl<'e> Selection<'e> {
             "with a confidence of 95 %"
         };
         let small = match small.pixels {
+            0 if small.is_left_out => {
+                " Things smaller than a sample may be in most pixels: none was looked for, and samples may have missed \
+                 them; `--certain` looks."
+                    .to_owned()
+            }
             0 => String::new(),
             pixels if self.is_certain => format!(
                 " {pixels} pixels may show things smaller than a sample; bounds include what these may have missed."
