@@ -1,18 +1,12 @@
 //! Measures certified pixels: how many there are, whether samples contradict them, and what they cost.
 
-use tabray_core::parallel;
-use tabray_core::render::flaws::Flaws;
-use tabray_core::render::observer::{Count, DynObserver, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
-use tabray_core::render::tiles::{self, TILE, TOGETHER};
-use tabray_core::render::trace::{PixelBound, Scratch, Tracer};
 use tabray_core::scene::model::Model;
-use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::{SCRAMBLE, Sampler};
 use tabray_core::world::sensor::Adaptive;
-use tabray_tools::clock;
+use tabray_tools::sampling::traced::{self, Image};
 
 /// The number of independent images whose mean gives the true colours, and the number of samples per pixel of each.
 const IMAGES: u32 = 8;
@@ -40,7 +34,7 @@ pub struct Outcome {
     pub contradicted: usize,
     /// The mean and the greatest bound of the other pixels.
     pub open: [f64; 2],
-    /// The CPU time of one thread, in seconds.
+    /// The CPU time, in seconds.
     pub seconds: f64,
     /// The CPU time of the same render without proofs, in seconds.
     pub without: f64,
@@ -48,25 +42,16 @@ pub struct Outcome {
     pub footprints: f64,
 }
 
-/// Renders the colours of a model by 4096 samples per pixel, on all threads, in rows from the top.
-pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
+/// Renders the colours of a model by 4096 samples per pixel, in rows from the bottom.
+pub fn truth(threads: &Renderer, model: &mut Model) -> Vec<Sampled> {
     let camera = &mut model.camera.value;
     (camera.samples, camera.adaptive, camera.certain) = (SAMPLES, None, false);
     camera.sampler = Sampler::Sobol;
-    let [width, height] = camera.pixels;
     let mut plan = Plan::new(model);
     let (mut sums, mut squares) = (Vec::new(), Vec::new());
     for image in 1..=IMAGES {
         plan.camera.scramble = SCRAMBLE ^ image.wrapping_mul(0x9e37_79b9);
-        let row = |index: usize| {
-            let y = height - 1 - index;
-            let pixels: Vec<_> = (0..width).map(|x| [x, y]).collect();
-            let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
-            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut nobody);
-            let seen = tracer.pixels(&pixels);
-            (0..width).map(|lane| seen.get(lane)).collect::<Vec<_>>()
-        };
-        let colours = renderer.run(|| parallel::map(height, row)).concat();
+        let colours = traced::image(threads, &plan).colours;
         sums.resize(colours.len(), Rgb::ZERO);
         squares.resize(colours.len(), Rgb::ZERO);
         for ((sum, square), colour) in sums.iter_mut().zip(&mut squares).zip(colours) {
@@ -85,28 +70,14 @@ pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
     sums.iter().zip(&squares).map(sampled).collect()
 }
 
-/// Collects the proven bounds of pixels, in their order.
-#[derive(Default)]
-struct Bounds(Vec<PixelBound>);
-
-impl TraceObserver for Bounds {
-    const SEES: bool = false;
-
-    fn count(&mut self, count: Count) {
-        if let Count::Bounded { error, is_certified, footprints } = count {
-            self.0.push(PixelBound { error, is_certified, footprints });
-        }
-    }
-}
-
 /// Measures a limit, where 1 is white, against the colours that [`truth`] returns.
-pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Sampled]) -> Outcome {
+pub fn measure(threads: &Renderer, model: &mut Model, limit: f64, truth: &[Sampled]) -> Outcome {
+    let adaptive = Some(Adaptive { most: 4096, error: Some(limit) });
     let camera = &mut model.camera.value;
-    (camera.samples, camera.adaptive) = (4, Some(Adaptive { most: 4096, error: Some(limit) }));
-    camera.certain = true;
-    let Rendered { colours: certain, bounds, seconds } = render(renderer, model);
+    (camera.samples, camera.adaptive, camera.certain) = (4, adaptive, true);
+    let Image { colours: certain, bounds, seconds, .. } = traced::image(threads, &Plan::new(model));
     model.camera.value.certain = false;
-    let without = render(renderer, model).seconds;
+    let without = traced::image(threads, &Plan::new(model)).seconds;
     let (mut worst, mut contradicted, mut open) = (0.0_f64, 0, Vec::new());
     let display = model.camera.value.display();
     for ((colour, bound), truth) in certain.iter().zip(&bounds).zip(truth) {
@@ -129,41 +100,6 @@ pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Samp
         without,
         footprints: bounds.iter().map(|bound| f64::from(bound.footprints)).sum::<f64>() / count,
     }
-}
-
-/// The colours of an image, in rows from the top, with their proven bounds and the CPU time.
-struct Rendered {
-    colours: Vec<Rgb>,
-    bounds: Vec<PixelBound>,
-    seconds: f64,
-}
-
-/// Renders a model on one thread.
-fn render(renderer: &Renderer, model: &Model) -> Rendered {
-    renderer.run(|| {
-        let (mut scratch, mut bounds) = (Scratch::default(), Bounds::default());
-        let start = clock::now();
-        let plan = Plan::new(model);
-        let [width, height] = plan.camera.pixels;
-        let mut colours = vec![Rgb::ZERO; width * height];
-        let mut proven = vec![PixelBound::default(); width * height];
-        let mut pixels = Vec::new();
-        for (low, left) in (0..height)
-            .step_by(TILE)
-            .flat_map(|low| (0..width).step_by(TILE * TOGETHER).map(move |left| (low, left)))
-        {
-            pixels.clear();
-            tiles::list(left..width.min(left + TILE * TOGETHER), low..height.min(low + TILE), &mut pixels);
-            bounds.0.clear();
-            let mut observer = DynObserver::<false>(&mut bounds);
-            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut observer);
-            let seen = tracer.pixels(&pixels);
-            let at = |[x, y]: [usize; 2]| (height - 1 - y) * width + x;
-            (0..pixels.len()).for_each(|lane| colours[at(pixels[lane])] = seen.get(lane));
-            pixels.iter().zip(&bounds.0).for_each(|(pixel, bound)| proven[at(*pixel)] = *bound);
-        }
-        Rendered { colours, bounds: proven, seconds: (clock::now() - start).as_secs_f64() }
-    })
 }
 
 #[cfg(test)]

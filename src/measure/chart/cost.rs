@@ -280,7 +280,7 @@ impl Counted {
 /// Traces packets on all threads of a renderer, and returns them in their order.
 fn traced(plan: &Plan, threads: &Renderer, packets: &[Pixels]) -> Vec<Packet> {
     let packet =
-        |Group { colours, rays, seconds }| Packet { pixels: colours.len(), seconds, rays, looked: 0.0 };
+        |Group { colours, rays, seconds, .. }| Packet { pixels: colours.len(), seconds, rays, looked: 0.0 };
     traced::groups(threads, plan, packets).into_iter().map(packet).collect()
 }
 

@@ -38,6 +38,7 @@ mod timings;
 mod verdict;
 
 pub use candidate::Load;
+pub use colours::{Difference, difference};
 pub use cost::Estimated;
 pub use data::{Chart, Family, Panel, Point, Subject, WrongHits, WrongHitsOf};
 pub use draw::{png, svg};

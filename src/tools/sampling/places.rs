@@ -122,6 +122,13 @@ pub fn tiles_around([width, height]: [usize; 2], [x, y]: [usize; 2], together: u
     pixels
 }
 
+/// Returns the pixels of all tiles of an image, `together` tiles at a time.
+pub fn all_tiles(size @ [width, height]: [usize; 2], together: usize) -> Vec<Pixels> {
+    let corners = (0..height).step_by(TILE);
+    let corners = corners.flat_map(|y| (0..width).step_by(TILE * together).map(move |x| [x, y]));
+    corners.map(|corner| tiles_around(size, corner, together)).collect()
+}
+
 /// Returns `count` of the tiles of an image, each the pixels of one packet of rays, or all tiles of a smaller image.
 pub fn tiles([width, height]: [usize; 2], count: usize) -> Vec<Pixels> {
     let tile = |corner: [usize; 2]| tiles_around([width, height], corner.map(|side| side * TILE), 1);

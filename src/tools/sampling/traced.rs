@@ -1,6 +1,6 @@
 //! Some pixels of an image, traced in groups as a render traces them: their colours and their costs.
 
-use super::places::Pixels;
+use super::places::{self, Pixels};
 use crate::clock;
 use glam::DVec2;
 use std::hint::black_box;
@@ -13,7 +13,8 @@ use tabray_core::render::flaws::Flaws;
 use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
-use tabray_core::render::trace::{Scratch, Tracer};
+use tabray_core::render::tiles::TOGETHER;
+use tabray_core::render::trace::{PixelBound, Scratch, Tracer};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::material::Rgb;
 use tabray_core::world::sample::Sample;
@@ -28,6 +29,8 @@ pub struct Group {
     pub colours: Vec<Rgb>,
     /// The rays.
     pub rays: Rays,
+    /// The proven bounds of the pixels; none where nothing is proven.
+    pub bounds: Vec<PixelBound>,
     /// The CPU time, in seconds.
     pub seconds: f64,
 }
@@ -45,17 +48,27 @@ pub struct Rays {
     pub is_cut: bool,
 }
 
-impl TraceObserver for Rays {
+/// Counts the rays of a group, and keeps what is proven of its pixels.
+#[derive(Default)]
+struct Counted {
+    rays: Rays,
+    bounds: Vec<PixelBound>,
+}
+
+impl TraceObserver for Counted {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
         match count {
             Count::Rays(kind, rays) => {
-                self.all += rays as u64;
-                self.primary += if kind == RayKind::Primary { rays as u64 } else { 0 };
+                self.rays.all += rays as u64;
+                self.rays.primary += if kind == RayKind::Primary { rays as u64 } else { 0 };
             }
-            Count::Sampled(samples) => self.samples += u64::from(samples),
-            Count::Cut(_) => self.is_cut = true,
+            Count::Sampled(samples) => self.rays.samples += u64::from(samples),
+            Count::Cut(_) => self.rays.is_cut = true,
+            Count::Bounded { error, is_certified, footprints } => {
+                self.bounds.push(PixelBound { error, is_certified, footprints });
+            }
             _ => {}
         }
     }
@@ -83,14 +96,15 @@ pub fn groups(threads: &Renderer, plan: &Plan, pixels: &[impl AsRef<[[usize; 2]]
 }
 
 fn group(plan: &Plan, pixels: &[[usize; 2]], scratch: &mut Scratch) -> Group {
-    let mut rays = Rays::default();
-    let mut observer = DynObserver::<false>(&mut rays);
+    let mut counted = Counted::default();
+    let mut observer = DynObserver::<false>(&mut counted);
     let start = clock::now();
     let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut observer);
     let view = tracer.pixels(pixels);
     let seconds = (clock::now() - start).as_secs_f64();
     let colours = (0..pixels.len()).map(|pixel| view.get(pixel)).collect();
-    Group { colours, rays, seconds }
+    let Counted { rays, bounds } = counted;
+    Group { colours, rays, bounds, seconds }
 }
 
 /// Traces pixels that may lie far apart, and returns the colour of each, before it is clamped, and the number of
@@ -102,6 +116,37 @@ pub fn apart(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> (Vec<Rgb
     let groups = groups(threads, plan, &pixels.chunks(at_once).collect::<Vec<_>>());
     let samples = groups.iter().map(|group| group.rays.samples).collect();
     (groups.into_iter().flat_map(|group| group.colours).collect(), samples)
+}
+
+/// A whole image, its pixels in rows from the bottom.
+#[derive(Default)]
+pub struct Image {
+    /// The colours, before they are clamped to what an image can show.
+    pub colours: Vec<Rgb>,
+    /// The proven bounds of the pixels; none where nothing is proven.
+    pub bounds: Vec<PixelBound>,
+    /// The number of rays from the viewer.
+    pub primary: u64,
+    /// The CPU time of all threads, in seconds.
+    pub seconds: f64,
+}
+
+/// Traces a whole image, in tiles as a render does.
+pub fn image(threads: &Renderer, plan: &Plan) -> Image {
+    let size @ [width, height] = plan.camera.pixels;
+    let tiles = places::all_tiles(size, if plan.camera.adaptive.is_some() { TOGETHER } else { 1 });
+    let mut image = Image { colours: vec![Rgb::ZERO; width * height], ..Image::default() };
+    for (pixels, group) in tiles.iter().zip(groups(threads, plan, &tiles)) {
+        let places = pixels.iter().map(|[x, y]| y * width + x);
+        image.primary += group.rays.primary;
+        image.seconds += group.seconds;
+        if !group.bounds.is_empty() {
+            image.bounds.resize(width * height, PixelBound::default());
+        }
+        places.clone().zip(group.colours).for_each(|(place, colour)| image.colours[place] = colour);
+        places.zip(group.bounds).for_each(|(place, bound)| image.bounds[place] = bound);
+    }
+    image
 }
 
 /// Traces places of the image with their samples, those of each of these pixels together, and returns the colours of each

@@ -62,7 +62,7 @@ pub fn run(
     file: Option<&Path>,
     keep: Option<&Path>,
 ) -> Result<(), Failure> {
-    let renderer = renderer_with(0)?;
+    let (threads, thread) = (renderer_with(0)?, renderer_with(1)?);
     let mut chart = Chart {
         scene: "samples per pixel".to_owned(),
         machine: Machine::here(),
@@ -83,9 +83,9 @@ pub fn run(
         let measured = match kept.as_deref().and_then(|path| read(path, all.len())) {
             Some(measured) => measured,
             None => {
-                let right = sampling::truth(&renderer, &mut model, truth);
+                let right = sampling::truth(&threads, &model, truth);
                 let rounds = if question == Question::Rms { ROUNDS } else { 1 };
-                let measured = sampling::measure(&mut model, &all, &right, rounds);
+                let measured = sampling::measure(&thread, &model, &all, &right, rounds);
                 if let Some(path) = kept {
                     output::replace(&path, text::json_in_lines(&measured).as_bytes())?;
                 }
