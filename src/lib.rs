@@ -24,6 +24,9 @@ pub use tabray_cli as cli;
 pub use tabray_core::{geometry, glam, output, prelude, query, render, shapes, simd, world};
 pub use tabray_exact as exact;
 
+#[cfg(not(feature = "import"))]
+mod absent;
+
 // Links the entity types and what guests add, which register themselves.
 #[cfg(feature = "farm")]
 use tabray_farm as _;
