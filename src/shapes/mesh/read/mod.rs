@@ -11,6 +11,7 @@ mod obj;
 mod ply;
 mod ply_bytes;
 mod ply_header;
+mod ply_section;
 mod ply_text;
 mod polygons;
 pub mod staging;

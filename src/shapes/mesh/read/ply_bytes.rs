@@ -2,7 +2,7 @@
 
 use super::at_corners::Attributes;
 use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError};
-use super::ply_header::{Field, Kind, Number, Section, Vertex, coordinates, normal, uv};
+use super::ply_section::{Field, Kind, Number, Section, Vertex, coordinates, normal, uv};
 use super::polygons::Polygons;
 use glam::DVec3;
 use tabray_world::parallel;

@@ -3,7 +3,8 @@
 use super::at_corners::{AtCorners, NO_VALUE};
 use super::blocks::{self, Lines, Words, is_blank, never, words};
 use super::model::{ENDS_EARLY, MemoryBudget, Model, ReadError, coordinate};
-use super::ply_header::{Field, Kind, Number, Section, Vertex, coordinates, unexpected};
+use super::ply_header::unexpected;
+use super::ply_section::{Field, Kind, Number, Section, Vertex, coordinates};
 use super::polygons::Polygons;
 use memchr::memchr_iter;
 use std::sync::Arc;
