@@ -104,7 +104,7 @@ impl Hittable for Ball {
             }
             // As a search without a bound, which most rays end soon.
             // Rays along one line have the same answer, and those beside it do not.
-            Fault::Fickle if ray.dir.x.to_bits() % 16 == 0 => MISS,
+            Fault::Fickle if ray.dir.x.to_bits().is_multiple_of(16) => MISS,
             Fault::Slow if ray.dir.x > 0.9 => {
                 let lost: f64 = (0..3_000_000).map(|number| libm::sin(f64::from(number % (1 << 20)))).sum();
                 if lost.is_nan() { MISS } else { first }
