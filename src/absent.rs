@@ -5,18 +5,20 @@ use tabray_lang::import::{Imported, Program};
 use tabray_lang::reader::{Fault, Report};
 
 inventory::submit! {
-    Program { what: "a surface of SURFER", extensions: &["jsurf"], has_written: |_| false, read: refuse }
+    Program {
+        what: "a file of SURFER or surf",
+        cure: CURE,
+        extensions: &["jsurf", "surf", "pic"],
+        has_written: |_| false,
+        read: refuse,
+    }
 }
 
-inventory::submit! {
-    Program { what: "a script of surf", extensions: &["surf", "pic"], has_written: |_| false, read: refuse }
-}
+const CURE: &str = "`tabray convert` of a tabray that was built with its feature `import` writes it as one";
 
 fn refuse(name: &str, text: &str) -> Result<Imported, Report> {
     let mut report = Report::new(name, text.to_owned(), Syntax::Notes);
     let first = text.lines().next().map_or(0, str::len);
-    let message = "this tabray was built without its feature `import`, which reads files of SURFER and surf";
-    let cure = "a tabray with all features reads it; its `tabray convert` writes a scene for this one";
-    report.add(Fault::error(Some(0..first), message).help(cure));
+    report.add(Fault::error(Some(0..first), "this is a file of SURFER or surf, not a scene").help(CURE));
     Err(report)
 }

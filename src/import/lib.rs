@@ -20,6 +20,7 @@ use tabray_lang::reader::Report;
 inventory::submit! {
     Program {
         what: SURFER,
+        cure: CURE,
         extensions: &["jsurf"],
         has_written: |text| has(text, "surface_equation"),
         read: |name, text| read(SURFER, jsurf::read, name, text),
@@ -29,6 +30,7 @@ inventory::submit! {
 inventory::submit! {
     Program {
         what: SURF,
+        cure: CURE,
         extensions: &["surf", "pic"],
         has_written: |text| has(text, "draw_surface") && text.contains(';') && !has(text, "surface_equation"),
         read: |name, text| read(SURF, surf::read, name, text),
@@ -37,6 +39,7 @@ inventory::submit! {
 
 const SURFER: &str = "a surface of SURFER";
 const SURF: &str = "a script of surf";
+const CURE: &str = "`tabray convert` writes it as one: give it this file, and a name that ends in .ray";
 
 /// Links these programs. For most systems, `use tabray_import as _;` does that alone; for WebAssembly, a program calls
 /// this.

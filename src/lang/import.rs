@@ -7,6 +7,8 @@ use std::path::Path;
 pub struct Program {
     /// A description of its files, such as `a surface of SURFER`.
     pub what: &'static str,
+    /// What makes a scene of such a file, for who gives it in place of one.
+    pub cure: &'static str,
     /// The extensions of its files, in small letters.
     pub extensions: &'static [&'static str],
     /// Recognises a file by words in its text that neither scenes nor files of other programs have.
@@ -41,9 +43,9 @@ impl Program {
     }
 }
 
-/// Returns a description of a file, if it is from one of these programs.
-pub(crate) fn what(name: &str, text: &str) -> Option<&'static str> {
-    Program::of_name(name).or_else(|| Program::of_text(text)).map(|program| program.what)
+/// Returns the program that a file is from, if it is one of these.
+pub(crate) fn program(name: &str, text: &str) -> Option<&'static Program> {
+    Program::of_name(name).or_else(|| Program::of_text(text))
 }
 
 /// Converts a file of another program, recognised by its name or, unless the name is that of a scene, by its text.

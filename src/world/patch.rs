@@ -169,7 +169,7 @@ pub fn between(one: Rgb, other: Rgb, part: f64) -> Rgb {
 /// Returns the mean of a wave over an interval: 1 from 0 to 1, -1 from 1 to 2, and so on.
 fn balance(middle: f64, width: f64) -> f64 {
     let (from, to) = (middle - 0.5 * width, middle + 0.5 * width);
-    // The remainder by 2, without rounding where `rem_euclid` has none, in a tenth of its time.
+    // The remainder by 2. `rem_euclid` calls `fmod`, which took a third of the picture of a tiled plane.
     let rest = |at: f64| at - 2.0 * (0.5 * at).floor();
     let sign = |at: f64| if rest(at) < 1.0 { 1.0 } else { -1.0 };
     if from.floor() == to.floor() {

@@ -102,9 +102,9 @@ impl Hittable for Ball {
                 let last = self.calls.swap(ray.dir.x.to_bits(), Ordering::Relaxed);
                 if last != 0 && last != ray.dir.x.to_bits() && first < MISS { first + 1e-6 } else { first }
             }
-            // As a search without a bound, which most rays end soon.
             // Rays along one line have the same answer, and those beside it do not.
             Fault::Fickle if ray.dir.x.to_bits().is_multiple_of(16) => MISS,
+            // As a search without a bound, which most rays end soon.
             Fault::Slow if ray.dir.x > 0.9 => {
                 let lost: f64 = (0..3_000_000).map(|number| libm::sin(f64::from(number % (1 << 20)))).sum();
                 if lost.is_nan() { MISS } else { first }

@@ -2,6 +2,8 @@
 
 #[cfg(unix)]
 use std::fs;
+#[cfg(unix)]
+use std::io::ErrorKind::NotFound;
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -38,9 +40,9 @@ struct BeforeMain;
 impl inventory::Collect for BeforeMain {
     fn registry() -> &'static inventory::Registry {
         static REGISTRY: inventory::Registry = inventory::Registry::new();
-        // Where no such folder is, nothing is known.
-        let exists = |path: &str| fs::symlink_metadata(path).is_ok();
-        WAS_CLOSED.store(exists("/dev/fd") && !exists("/dev/fd/1"), Ordering::Relaxed);
+        // Where the folder cannot be seen, as without `/proc`, nothing is known.
+        let is_closed = || fs::symlink_metadata("/dev/fd/1").is_err_and(|error| error.kind() == NotFound);
+        WAS_CLOSED.store(fs::read_dir("/dev/fd").is_ok() && is_closed(), Ordering::Relaxed);
         &REGISTRY
     }
 }

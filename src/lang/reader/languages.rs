@@ -4,7 +4,7 @@ use super::fault::Fault;
 use super::notes::has_entities;
 use super::report::Report;
 use super::tokens::{Token, Tokens};
-use crate::import;
+use crate::import::{self, Program};
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 use std::collections::HashSet;
@@ -152,10 +152,10 @@ fn of_pov(text: &str, name: &str) -> Option<Fault> {
 
 /// Recognises a file of SURFER or surf.
 fn of_surfaces(name: &str, text: &str) -> Option<Fault> {
-    let what = import::what(name, text)?;
+    let Program { what, cure, .. } = import::program(name, text)?;
     let first = text.lines().next().map_or(0, str::len);
     let fault = Fault::error(Some(0..first), format!("this is {what}, not a scene"));
-    Some(fault.help("`tabray convert` writes it as one: give it this file, and a name that ends in .ray"))
+    Some(fault.help(*cure))
 }
 
 /// The extensions of mesh files.

@@ -75,9 +75,9 @@ fn extreme(shape: &AnyShape, middle: DVec3, half: DVec3, (axis, side): (usize, f
         let origin = on_side(part) + (half.max_element() + 1.0) * outward;
         RayTrial { shape, ray: Ray { origin, dir: -outward }, is_exact: true }.distance_in_time()
     };
-    let Some(proven) = of_closed(shape) else { return Ok(on_side(least(depth, 1e-4)?)) };
+    let Some(proven) = of_closed(shape) else { return Ok(on_side(least(depth)?)) };
     let value = |part: DVec2| value(proven, constants(on_side(part)));
-    let at = least(|part| Ok(value(part).middle()), 1e-9)?;
+    let at = least(|part| Ok(value(part).middle()))?;
     // The bounds may be off by rounding.
     let beyond = on_side(at) + 1e-9 * (middle.abs() + half).max_element() * outward;
     if self::value(proven, constants(beyond)).high < 0.0 {
@@ -124,8 +124,8 @@ fn value(proven: &dyn ProofMethods, at: [Interval; 3]) -> Interval {
 }
 
 /// Returns where a function on the square from -1 to 1 is least, or nearly so: the best place of a grid, improved by
-/// smaller and smaller steps down to the last. On a smooth surface, the least value changes by the square of a step.
-fn least(of: impl Fn(DVec2) -> Result<f64, Fault>, last: f64) -> Result<DVec2, Fault> {
+/// smaller and smaller steps.
+fn least(of: impl Fn(DVec2) -> Result<f64, Fault>) -> Result<DVec2, Fault> {
     let (mut best, mut at) = (MISS, DVec2::ZERO);
     let mut try_place = |place: DVec2| {
         let value = of(place)?;
@@ -141,7 +141,7 @@ fn least(of: impl Fn(DVec2) -> Result<f64, Fault>, last: f64) -> Result<DVec2, F
         middle = try_place(place)?.unwrap_or(middle);
     }
     let mut step = 0.2;
-    while step > last {
+    while step > 1e-9 {
         let mut next = None;
         for aside in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
             let place = middle + step * aside;

@@ -34,10 +34,8 @@ use tabray_lang::reader;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// The number of scenes that are drawn for an entity type, and the number of them in place of which one with costly shapes
-/// is drawn: these have a method in common, which all types with it try.
+/// The number of scenes that are drawn for an entity type.
 const SCENES: usize = 24;
-const COSTLY: usize = 4;
 
 /// One of this many scenes is also tried at its objects' extremes.
 const EXTREMES: usize = 8;
@@ -194,24 +192,17 @@ fn of_entity(
 ) -> Option<Breach> {
     let mut draw = Draw::new(entity.name);
     let (mut gravest, mut refused, mut models, mut hits): (Option<Breach>, _, _, _) = (None, None, 0, 0);
-    let (mut seen, mut spent, mut tried_extremes) = (String::new(), 0, 0);
-    for index in 0.. {
-        if spent >= SCENES {
-            break;
-        }
+    let mut seen = String::new();
+    for index in 0..SCENES {
         let text = draw.scene(registry, entity, stand_ins);
         let accuracy = if index % 4 == 3 { Accuracy::Strict } else { Accuracy::Exact };
         let model = match reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy)) {
             Ok(loaded) => loaded.model,
             Err(report) => {
                 refused.get_or_insert_with(|| (report.to_string(), text));
-                spent += 1;
                 continue;
             }
         };
-        let tries_extremes = entity.kind() == Kind::Object && spent >= EXTREMES * tried_extremes;
-        let is_costly = model.objects.iter().any(|object| object.shape.facts().may_be_costly);
-        spent += if is_costly { COSTLY } else { 1 };
         models += 1;
         let tried = match entity.kind() {
             Kind::Camera => cameras::camera(&model.camera.value),
@@ -241,10 +232,9 @@ fn of_entity(
                 break;
             }
         }
-        if tries_extremes {
+        if entity.kind() == Kind::Object && index % EXTREMES == 0 {
             // An object may have no inside, or there may be no copies.
-            let extra = extremes::VARIANTS[tried_extremes % extremes::VARIANTS.len()];
-            tried_extremes += 1;
+            let extra = extremes::VARIANTS[index / EXTREMES % extremes::VARIANTS.len()];
             let with_copy = format!("{text}{extra}\n");
             let read = |text: &str| {
                 reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy))

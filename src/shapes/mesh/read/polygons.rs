@@ -116,7 +116,7 @@ impl Polygons {
                     "has {} with too many corners to be cut",
                     text::count(uncut, "concave polygon")
                 ),
-                help: "it is shown as if it were convex; cut it into smaller ones",
+                help: "such a face is shown as if it were convex; cut it into smaller ones",
             });
         }
         if bent > 0 {

@@ -126,6 +126,29 @@ fn an_obj_has_polygons_and_materials_and_counts_backward() {
     assert_eq!(model.slots, [0, 0, 1, 2]);
 }
 
+/// Cutting one takes a time that grows with the square of its corners.
+#[test]
+fn a_concave_polygon_of_too_many_corners_is_told() {
+    // The corners of a star lie on two circles by turns.
+    let star = |count: u32| {
+        let corner = |index: u32| {
+            let (sin, cos) = libm::sincos(f64::from(index) * std::f64::consts::TAU / f64::from(count));
+            let radius = f64::from(1 + index % 2);
+            format!("v {} {} 0\n", radius * cos, radius * sin)
+        };
+        let face: String = (1..=count).map(|index| format!(" {index}")).collect();
+        (0..count).map(corner).collect::<String>() + "f" + &face + "\n"
+    };
+    let told = |count: u32| {
+        let model = named("obj", star(count)).expect("a mesh");
+        model
+            .remarks
+            .iter()
+            .any(|remark| remark.message == "has 1 concave polygon with too many corners to be cut")
+    };
+    assert_eq!([1000, 32_768 + 2].map(told), [false, true]);
+}
+
 #[test]
 fn a_broken_text_is_told_with_its_line() {
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
