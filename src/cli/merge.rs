@@ -19,7 +19,7 @@ use tabray_core::files::in_held_folder;
 use tabray_core::output::aov::Aov;
 use tabray_core::output::aov_values::Values;
 use tabray_core::output::full_range::FullRange;
-use tabray_core::output::picture::Format;
+use tabray_core::output::picture::{About, Format};
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TILE;
 use tabray_core::text;
@@ -140,9 +140,10 @@ impl Parts {
                     let output = self.open(&path)?;
                     aov::write_numbers(&layer, (format, path, output), self.label.size)?;
                 }
-                let rows = iter::once(Ok(layer.bytes));
+                let (rows, about) =
+                    (iter::once(Ok(layer.bytes)), About { dpi: self.label.dpi, ..About::default() });
                 return output::write_image(path, self.open(path)?, |out| {
-                    format.write(out, self.label.size, rows)
+                    format.write_on(None, &about, out, self.label.size, rows)
                 });
             }
         }
@@ -180,7 +181,8 @@ impl Parts {
         });
         let made: Vec<_> =
             self.label.made.iter().map(|(keyword, text)| (keyword.as_str(), text.clone())).collect();
-        let written = format.write_on(Some(renderer), &made, &mut out, size, rows);
+        let about = About { texts: &made, dpi: self.label.dpi };
+        let written = format.write_on(Some(renderer), &about, &mut out, size, rows);
         progress.end();
         match broken {
             Some(failure) => Err(failure),
@@ -196,7 +198,7 @@ impl Parts {
         let pixels: Vec<f32> = bytes.as_chunks().0.iter().map(|number| f32::from_le_bytes(*number)).collect();
         drop(bytes);
         let mut out = BufWriter::new(out);
-        let written = format.write(&mut out, self.label.size, &pixels);
+        let written = format.write(&mut out, self.label.size, &pixels, self.label.dpi);
         output::finished(path, written, out)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::files::input::Source;
 use crate::files::output::Output;
+use crate::files::provenance::Provenance;
 use crate::options::set;
 use crate::options::size::Region;
 use crate::options::stop::Stop;
@@ -47,5 +48,5 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
         stats: &Stats::default(),
         counts: false,
     };
-    Job { tiles, path: standard, made: &[] }.bytes(output, Format::Ppm, None).map(|_| ())
+    Job { tiles, path: standard, made: &Provenance::default() }.bytes(output, Format::Ppm, None).map(|_| ())
 }

@@ -8,7 +8,7 @@ use crate::files::output::format_of;
 use crate::files::{folders, input, output, several};
 use crate::options::frames::{Frame, Range};
 use crate::options::named::by_name;
-use crate::options::{cpu, frames, keep, method, samples, set, size, stop, threads};
+use crate::options::{cpu, frames, keep, method, print, samples, set, size, stop, threads};
 use crate::process::failure::Failure;
 use crate::rendering::{aov, debug, part, resume, stats};
 use std::path::{Path, PathBuf};
@@ -45,6 +45,8 @@ pub struct Args {
     #[arg(long, value_name = "STOPS", default_value = "0", value_parser = exposure, allow_negative_numbers = true)]
     #[arg(help_heading = "Image")]
     exposure: f64,
+    #[command(flatten)]
+    print: print::Args,
     #[command(flatten)]
     samples: samples::Args,
     #[command(flatten)]
@@ -143,8 +145,13 @@ impl Args {
         let (set, mut whole) = (self.set.values.clone(), None);
         self.set.set_by = self.frames.set_by();
         let frames = self.frames.of(&path, &mut whole)?;
-        if frames.is_none() && self.full_range(&path).is_none() {
-            format_of(self.format, &path, self.compress)?;
+        let full_range = self.full_range(&path);
+        if frames.is_none() {
+            let format = match full_range {
+                Some(_) => Format::Png(self.compress),
+                None => format_of(self.format, &path, self.compress)?,
+            };
+            self.print.dpi(&path, format, full_range)?;
         }
         self.cpu.cpu()?;
         let mut frames = frames.unwrap_or_else(|| vec![Frame { path, sets: Vec::new() }]);

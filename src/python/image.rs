@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::full_range::FullRange;
-use tabray_core::output::picture::Format;
+use tabray_core::output::picture::{About, Format};
 use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::RenderCallbacks;
@@ -137,17 +137,17 @@ fn warn(py: Python<'_>, flaws: &Flaws) -> PyResult<()> {
 
 impl Image {
     /// Encodes the image in this format.
-    fn encoded(&self, format: Format) -> io::Result<Vec<u8>> {
-        let mut file = Vec::new();
-        format.write(&mut file, self.size, iter::once(Ok(self.bytes.clone())))?;
+    fn encoded(&self, format: Format, dpi: Option<u32>) -> io::Result<Vec<u8>> {
+        let (mut file, about) = (Vec::new(), About { dpi, ..About::default() });
+        format.write_on(None, &about, &mut file, self.size, iter::once(Ok(self.bytes.clone())))?;
         Ok(file)
     }
 
-    fn full_range(&self, py: Python<'_>, format: FullRange) -> PyResult<Vec<u8>> {
+    fn full_range(&self, py: Python<'_>, format: FullRange, dpi: Option<u32>) -> PyResult<Vec<u8>> {
         let array: PyReadonlyArray3<'_, f64> = self.array.bind(py).try_readonly()?;
         let numbers: Vec<f32> = array.as_array().iter().map(|number| *number as f32).collect();
         let mut file = Vec::new();
-        format.write(&mut file, self.size, &numbers)?;
+        format.write(&mut file, self.size, &numbers, dpi)?;
         Ok(file)
     }
 }
@@ -167,11 +167,19 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 impl Image {
     /// Writes the image to a file, in the format of the file name's ending. .png and .ppm have the bytes that the
     /// command line writes; .exr and .pfm have the light, as float32. An existing file is replaced when the new one
-    /// is complete.
-    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+    /// is complete. `dpi` records in a .png or an .exr with how many pixels per inch the image is to be printed.
+    #[pyo3(signature = (path, *, dpi=None))]
+    fn save(&self, py: Python<'_>, path: PathBuf, dpi: Option<u32>) -> PyResult<()> {
+        if dpi.is_some_and(|dpi| !(1..=100_000).contains(&dpi)) {
+            return Err(PyValueError::new_err("`dpi` is a whole number from 1 to 100000"));
+        }
         let bytes = match (Format::of(&path), FullRange::of(&path)) {
-            (Some(format), _) => self.encoded(format)?,
-            (None, Some(format)) => self.full_range(py, format)?,
+            (Some(Format::Ppm), _) | (_, Some(FullRange::Pfm)) if dpi.is_some() => {
+                let told = format!("`{}` cannot record `dpi`: end it in .png or .exr", text::shown(&path));
+                return Err(PyValueError::new_err(told));
+            }
+            (Some(format), _) => self.encoded(format, dpi)?,
+            (None, Some(format)) => self.full_range(py, format, dpi)?,
             (None, None) => {
                 let told = format!(
                     "`{}` has no known format: end it in .png, .ppm, .exr or .pfm",
@@ -210,7 +218,7 @@ impl Image {
     }
 
     pub(crate) fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.encoded(Format::Png(Compression::Balanced))?))
+        Ok(PyBytes::new(py, &self.encoded(Format::Png(Compression::Balanced), None)?))
     }
 
     fn __repr__(&self) -> String {

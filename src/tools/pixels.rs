@@ -289,7 +289,8 @@ mod tests {
     fn written(pixels: &[u8], done: [bool; 4]) -> Vec<u8> {
         let (identity, what) = (Identity::default(), PixelFormat::Ppm);
         let (beside, made) = (Vec::new(), Vec::new());
-        let label = Label { part: [1, 1], tiles: [0, 4], size: SIZE, what, beside, identity, made };
+        let label =
+            Label { part: [1, 1], tiles: [0, 4], size: SIZE, what, beside, identity, made, dpi: None };
         let (mut writer, mut bytes) = (Writer::new(Vec::new(), &label).expect("memory takes it"), Vec::new());
         for (tile, is_done) in done.into_iter().enumerate() {
             take_tile(pixels, 3 * SIZE[0], label.grid().tile(tile), 3, &mut bytes);

@@ -27,6 +27,7 @@ mod limits;
 mod messages;
 mod new;
 mod parts;
+mod print;
 mod programs;
 mod refusals;
 mod review;

@@ -1,5 +1,5 @@
-//! The texts that a PNG records about how its image was made: the same for images that must be the same. By these
-//! texts, an existing frame is recognized.
+//! What an image file says of how its image was made, and of how it is to be printed. The texts of a PNG are the same for
+//! images that must be the same, and by them an existing frame is recognized.
 
 use crate::files::input::Source;
 use crate::options::size::Region;
@@ -9,6 +9,7 @@ use std::fs;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use tabray_core::files;
+use tabray_core::output::picture::About;
 use tabray_core::scene::choice::Choice;
 use tabray_core::text;
 use tabray_core::text::Named;
@@ -16,21 +17,39 @@ use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::rules::Rules;
 use tabray_core::world::sensor::{Adaptive, Sensor};
 
-/// Returns the texts of an image, each with its keyword: the version of the program, the hash of the scene's text, and
-/// the options with which the program makes the same image of the scene. Threads, the level of CPU instructions and
-/// the compression are none of them, as the image does not depend on these. With the camera goes the exposure that is added
-/// to its own, in stops.
-pub fn texts(
-    source: &Source,
-    set: &set::Args,
-    camera: (&Sensor, f64),
-    region: &Region,
-) -> Vec<(&'static str, String)> {
-    vec![
-        ("Software", concat!("tabray ", env!("CARGO_PKG_VERSION")).to_owned()),
-        ("tabray scene", source.hash()),
-        ("tabray options", options(camera, region) + &set.words()),
-    ]
+/// What the file of an image says besides its pixels.
+#[derive(Default)]
+pub struct Provenance {
+    /// Texts, each with its keyword: the version of the program, the hash of the scene's text, and the options with which
+    /// the program makes the same file of the scene. Threads, the level of CPU instructions and the compression are none
+    /// of them, as the image does not depend on these.
+    pub texts: Vec<(&'static str, String)>,
+    /// The number of pixels per inch with which the image is to be printed.
+    pub dpi: Option<u32>,
+}
+
+impl Provenance {
+    /// Describes an image. With the camera goes the exposure that is added to its own, in stops.
+    pub fn of(
+        source: &Source,
+        set: &set::Args,
+        camera: (&Sensor, f64),
+        region: &Region,
+        dpi: Option<u32>,
+    ) -> Self {
+        let printed = dpi.map_or(String::new(), |dpi| format!(" --dpi {dpi}"));
+        let texts = vec![
+            ("Software", concat!("tabray ", env!("CARGO_PKG_VERSION")).to_owned()),
+            ("tabray scene", source.hash()),
+            ("tabray options", options(camera, region) + &printed + &set.words()),
+        ];
+        Self { texts, dpi }
+    }
+
+    /// Returns what the format has a place for.
+    pub fn about(&self) -> About<'_> {
+        About { texts: &self.texts, dpi: self.dpi }
+    }
 }
 
 /// Tells whether a complete image exists: a PNG that has these texts, and is newer than the program and than the files

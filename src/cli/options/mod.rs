@@ -7,6 +7,7 @@ pub mod max_error;
 pub mod method;
 pub mod named;
 pub mod number;
+pub mod print;
 pub mod samples;
 pub mod scene;
 pub mod set;

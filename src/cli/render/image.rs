@@ -4,7 +4,7 @@ use super::Args;
 use crate::course::Differences;
 use crate::files::input::{self, Source};
 use crate::files::output::{Output, format_of};
-use crate::files::provenance;
+use crate::files::provenance::{self, Provenance};
 use crate::options::size::Region;
 use crate::options::stop::Stop;
 use crate::process::failure::Failure;
@@ -43,6 +43,7 @@ pub(super) fn render(
     } else {
         format_of(args.format, &path, args.compress)?
     };
+    let dpi = args.print.dpi(&path, format, full_range)?;
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
@@ -56,7 +57,8 @@ pub(super) fn render(
     camera.exposure += args.exposure;
     let region = args.size.apply(camera)?;
     args.samples.raise(&mut model, args.threads, cpu)?;
-    let made = provenance::texts(&source, &args.set, (&model.camera.value, args.exposure), &region);
+    let camera = (&model.camera.value, args.exposure);
+    let made = Provenance::of(&source, &args.set, camera, &region, dpi);
     let image = ImageRender {
         registry,
         args,
@@ -77,7 +79,9 @@ pub(super) fn render(
     if let Some(number) = args.part.part {
         return image.part(number, stats);
     }
-    if args.skips(&path, &image.model)? && provenance::is_up_to_date(&path, &image.made, warnings.files()) {
+    if args.skips(&path, &image.model)?
+        && provenance::is_up_to_date(&path, &image.made.texts, warnings.files())
+    {
         messages::note(&format!("{} exists already", text::shown(path)));
         return Ok(());
     }
@@ -99,8 +103,8 @@ struct ImageRender<'a> {
     memory: Option<u64>,
     model: Model,
     region: Region,
-    /// The texts about how it was made.
-    made: Vec<(&'static str, String)>,
+    /// What its file says of how it was made.
+    made: Provenance,
     differences: Differences,
     cpu: Cpu,
 }
@@ -149,12 +153,18 @@ impl ImageRender<'_> {
             Some(format) => job.full_range(output, format)?,
             None => render_bytes(&job, (output, format, begun), &self.differences, start)?,
         }
-        trial::warn_of_mistakes((&plan, &region), &renderer, &self.made, self.scene, start.elapsed());
+        trial::warn_of_mistakes((&plan, &region), &renderer, &self.made.texts, self.scene, start.elapsed());
         stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
         args.stats.print(&stats, &model);
         let Some(source) = source else { return Ok(()) };
         stop.exit_on_interrupt()?;
-        aov::write(&plan, || read_exact(&source, registry, &model, memory), args.threads, format, beside)
+        aov::write(
+            &plan,
+            || read_exact(&source, registry, &model, memory),
+            args.threads,
+            (format, self.made.dpi),
+            beside,
+        )
     }
 
     /// Renders a part of the image into a file of its own.
@@ -193,7 +203,7 @@ impl ImageRender<'_> {
         let exact = || read_exact(&self.source, self.registry, model, args.stop.memory_left());
         let has_errors = beside.contains(&Aov::Error);
         part.run(args.stop.resume, |work| aov::with_truth(&plan, has_errors, exact, |truth| work(truth)))?;
-        trial::warn_of_mistakes((&plan, region), &renderer, &self.made, self.scene, start.elapsed());
+        trial::warn_of_mistakes((&plan, region), &renderer, &self.made.texts, self.scene, start.elapsed());
         stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
         args.stats.print(&stats, model);
         Ok(())

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use tabray_core::output::aov::{Aov, Layer};
 use tabray_core::output::numbers::NumberFormat;
-use tabray_core::output::picture::Format;
+use tabray_core::output::picture::{About, Format};
 use tabray_core::render::plan::Plan;
 use tabray_core::scene::model::Model;
 use tabray_core::text::{self, Named};
@@ -146,12 +146,13 @@ pub fn with_truth<T>(
     work(&exact)
 }
 
-/// Renders the auxiliary images and writes their files. `exact` makes the model of the reference for errors.
+/// Renders the auxiliary images and writes their files, to be printed with as many pixels per inch. `exact` makes the model
+/// of the reference for errors.
 pub fn write(
     plan: &Plan,
     exact: impl FnOnce() -> Result<Model, Failure>,
     threads: threads::Args,
-    format: Format,
+    format: (Format, Option<u32>),
     files: Vec<Files>,
 ) -> Result<(), Failure> {
     let requested = files.iter().any(|file| file.aov == Aov::Error);
@@ -162,9 +163,10 @@ fn all(
     plan: &Plan,
     truth: &Plan,
     threads: threads::Args,
-    format: Format,
+    (format, dpi): (Format, Option<u32>),
     files: Vec<Files>,
 ) -> Result<(), Failure> {
+    let about = About { dpi, ..About::default() };
     let renderer = threads.renderer()?;
     let size = plan.camera.pixels;
     for Files { aov, picture, numbers } in files {
@@ -180,7 +182,9 @@ fn all(
             write_numbers(&layer, file, size)?;
         }
         let (path, output) = picture;
-        output::write_image(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;
+        output::write_image(&path, output, |out| {
+            format.write_on(None, &about, out, size, iter::once(Ok(layer.bytes)))
+        })?;
     }
     Ok(())
 }

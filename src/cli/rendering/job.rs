@@ -1,6 +1,7 @@
 //! Renders an image and writes it, or stops and leaves a checkpoint for a later render.
 
 use crate::files::output::{Output, finished, write_image};
+use crate::files::provenance::Provenance;
 use crate::process::failure::Failure;
 use crate::process::messages;
 use crate::rendering::bands::TileRender;
@@ -31,8 +32,8 @@ pub struct Job<'a> {
     pub tiles: TileRender<'a>,
     /// The path of the image.
     pub path: &'a Path,
-    /// The texts that a PNG records about how the image was made.
-    pub made: &'a [(&'static str, String)],
+    /// What the file says of how the image was made.
+    pub made: &'a Provenance,
 }
 
 impl Job<'_> {
@@ -95,7 +96,8 @@ impl Job<'_> {
         });
         // Pieces that are compressed together are in memory together.
         let renderer = (at_once == BAND).then_some(renderer);
-        let written = format.write_on(renderer, self.made, &mut out, region.size(), pieces.flatten());
+        let written =
+            format.write_on(renderer, &self.made.about(), &mut out, region.size(), pieces.flatten());
         let leave = |out, rows| self.leave(out, format, &done, rows).err().unwrap_or(Failure::Stopped);
         match (broken, written) {
             (Some(failure), _) => Err(failure),
@@ -148,7 +150,7 @@ impl Job<'_> {
             Ok(())
         })?;
         flaws::tell_of_far(self.tiles.stats.tally.flaws().far);
-        write_image(self.path, output, |out| format.write(out, self.tiles.region.size(), &all))
+        write_image(self.path, output, |out| format.write(out, self.tiles.region.size(), &all, self.made.dpi))
     }
 }
 

@@ -1,6 +1,7 @@
 //! `tabray render --part`: renders a part of an image into a file beside it, from which `tabray merge` makes the image.
 
 use crate::files::output::{self, Output};
+use crate::files::provenance::Provenance;
 use crate::options::size::Region;
 use crate::process::failure::Failure;
 use crate::process::progress::Progress;
@@ -58,8 +59,8 @@ pub fn beside(picture: &Path, [number, of]: [usize; 2]) -> PathBuf {
 /// A part that is to be rendered.
 pub struct PartRender<'a> {
     pub part: [usize; 2],
-    /// The texts that a PNG records about how the image was made.
-    pub made: &'a [(&'static str, String)],
+    /// What the file says of how the image was made.
+    pub made: &'a Provenance,
     /// Its tiles.
     pub tiles: TileRender<'a>,
     /// The path of the image, and that of an image whose name those beside it have.
@@ -241,7 +242,8 @@ fn is_complete((path, label): &(PathBuf, Label)) -> Result<bool, Failure> {
     let Ok(mut reader) = files::open(path).and_then(Reader::open) else { return Ok(false) };
     let there = &reader.label;
     let is_same = label.identity.differences(&there.identity).is_empty()
-        && (label.tiles, label.what, &label.beside) == (there.tiles, there.what, &there.beside);
+        && (label.tiles, label.what, &label.beside) == (there.tiles, there.what, &there.beside)
+        && label.dpi == there.dpi;
     let is_complete = is_same && reader.done.is_whole() && reader.check().is_ok();
     if is_complete {
         messages::note(&format!("{} exists already", text::shown(path)));

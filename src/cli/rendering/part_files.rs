@@ -161,6 +161,9 @@ fn same((path, label): (&Path, &Label), (other, first): (&Path, &Label)) -> Resu
     if differences.is_empty() && (label.size, label.what) != (first.size, first.what) {
         differences.push("its format differs".to_owned());
     }
+    if differences.is_empty() && label.dpi != first.dpi {
+        differences.push("`--dpi` differs".to_owned());
+    }
     if differences.is_empty() && label.beside != first.beside {
         differences.push("it has other images beside it".to_owned());
     }

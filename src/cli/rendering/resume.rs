@@ -1,6 +1,7 @@
 //! Checkpoints beside images: written where a render stops, and continued from by `--resume`.
 
 use crate::files::output::{self, Output};
+use crate::files::provenance::Provenance;
 use crate::options::size::Region;
 use crate::process::failure::Failure;
 use crate::process::messages;
@@ -236,16 +237,12 @@ pub fn share(pixels: usize, of: usize) -> String {
 }
 
 /// Returns the label of an image of bytes: it is part 1 of 1.
-pub fn label(
-    model: &Model,
-    region: &Region,
-    format: Format,
-    made: &[(&str, String)],
-) -> Result<Label, Failure> {
+pub fn label(model: &Model, region: &Region, format: Format, made: &Provenance) -> Result<Label, Failure> {
     let (identity, what) = (identity(model, region)?, PixelFormat::picture(format));
     let (part, size, beside) = ([1, 1], region.size(), Vec::new());
-    let made = made.iter().map(|(keyword, text)| ((*keyword).to_owned(), text.clone())).collect();
-    Ok(Label { part, tiles: [0, Grid { size }.count()], size, what, beside, identity, made })
+    let (dpi, texts) = (made.dpi, made.texts.iter());
+    let made = texts.map(|(keyword, text)| ((*keyword).to_owned(), text.clone())).collect();
+    Ok(Label { part, tiles: [0, Grid { size }.count()], size, what, beside, identity, made, dpi })
 }
 
 /// Describes what a part of a model's image depends on.

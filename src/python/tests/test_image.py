@@ -61,6 +61,22 @@ def test_formats_are_those_of_the_ending(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["it.exr", "it.pfm", "it.ppm"]
 
 
+def test_a_file_says_how_densely_it_is_printed(tmp_path):
+    image = tabray.parse(SCENE).render()
+    image.save(tmp_path / "plain.png")
+    image.save(tmp_path / "dense.png", dpi=300)
+    plain, dense = ((tmp_path / name).read_bytes() for name in ["plain.png", "dense.png"])
+    assert b"pHYs" + 2 * (11811).to_bytes(4, "big") + b"\x01" in dense and b"pHYs" not in plain
+    assert np.array_equal(png_pixels(plain), png_pixels(dense))
+    image.save(tmp_path / "dense.exr", dpi=300)
+    assert b"xDensity" in (tmp_path / "dense.exr").read_bytes()
+    for name in ["it.ppm", "it.pfm"]:
+        with pytest.raises(ValueError, match="end it in .png or .exr"):
+            image.save(tmp_path / name, dpi=300)
+    with pytest.raises(ValueError, match="a whole number from 1"):
+        image.save(tmp_path / "it.png", dpi=0)
+
+
 def test_depth_objects_and_normals_are_those_of_the_rays():
     scene = tabray.parse(SCENE)
     image = scene.render(depth=True, objects=True, normals=True)

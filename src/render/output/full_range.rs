@@ -1,7 +1,7 @@
 //! Image files with colours as they are computed: numbers of any size, instead of 256 levels.
 
-use image::codecs::openexr::OpenExrEncoder;
-use image::{ExtendedColorType, ImageEncoder, Rgb32FImage};
+use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
+use image::Rgb32FImage;
 use std::io::{self, BufRead, Cursor, Read, Write};
 use std::path::Path;
 
@@ -27,19 +27,28 @@ impl FullRange {
         }
     }
 
-    /// Writes a whole image: red, green and blue of each pixel, in rows from the top, each from the left.
+    /// Writes a whole image: red, green and blue of each pixel, in rows from the top, each from the left. An EXR says
+    /// with how many pixels per inch it is to be printed, if that is given.
     ///
     /// # Errors
     /// Returns the errors of `out`, and an error where the format cannot hold the size.
-    pub fn write(self, out: &mut impl Write, [width, height]: [usize; 2], pixels: &[f32]) -> io::Result<()> {
+    pub fn write(
+        self,
+        out: &mut impl Write,
+        [width, height]: [usize; 2],
+        pixels: &[f32],
+        dpi: Option<u32>,
+    ) -> io::Result<()> {
         match self {
             Self::Exr => {
-                let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
-                let bytes: Vec<u8> = pixels.iter().flat_map(|number| number.to_ne_bytes()).collect();
                 let mut file = Cursor::new(Vec::new());
-                OpenExrEncoder::new(&mut file)
-                    .write_image(&bytes, size(width)?, size(height)?, ExtendedColorType::Rgb32F)
-                    .map_err(io::Error::other)?;
+                let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
+                    let pixel = &pixels[3 * (y * width + x)..][..3];
+                    (pixel[0], pixel[1], pixel[2])
+                });
+                let mut image = Image::from_channels((width, height), channels);
+                image.layer_data.attributes.horizontal_density = dpi.map(|dpi| dpi as f32);
+                image.write().to_buffered(&mut file).map_err(io::Error::other)?;
                 out.write_all(&file.into_inner())
             }
             Self::Pfm => {
@@ -102,7 +111,7 @@ mod tests {
     fn a_float_map_is_read_as_it_was_written() {
         let pixels: Vec<f32> = (0..3 * 5 * 2).map(|index| 0.3 * index as f32 - 1.0).collect();
         let mut bytes = Vec::new();
-        FullRange::Pfm.write(&mut bytes, [5, 2], &pixels).expect("memory takes it");
+        FullRange::Pfm.write(&mut bytes, [5, 2], &pixels, None).expect("memory takes it");
         assert_eq!(read_pfm(&bytes[..]).expect("a map").into_raw(), pixels);
         for end in 0..bytes.len() {
             assert!(read_pfm(&bytes[..end]).is_err(), "cut off at {end}");

@@ -52,11 +52,11 @@ impl Numbers {
         let mut array = |descr| npy::begin(descr, &format!("({height}, {width})"), &mut file);
         match (format, self) {
             (NumberFormat::Exr, Self::Triples(numbers)) => {
-                FullRange::Exr.write(&mut file, [width, height], numbers)?;
+                FullRange::Exr.write(&mut file, [width, height], numbers, None)?;
             }
             (NumberFormat::Exr, Self::Distances(distances)) => {
                 let numbers: Vec<_> = distances.iter().flat_map(|distance| [*distance as f32; 3]).collect();
-                FullRange::Exr.write(&mut file, [width, height], &numbers)?;
+                FullRange::Exr.write(&mut file, [width, height], &numbers, None)?;
             }
             (NumberFormat::Exr, Self::Indices { of, indices }) => {
                 let samples = indices.iter().map(|index| index.unwrap_or(NONE)).collect();

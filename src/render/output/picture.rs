@@ -17,6 +17,15 @@ pub enum Format {
     Png(Compression),
 }
 
+/// What the file of an image says besides its pixels, where its format has a place for that.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct About<'t> {
+    /// Texts, each with its keyword.
+    pub texts: &'t [(&'t str, String)],
+    /// The number of pixels per inch with which the image is to be printed.
+    pub dpi: Option<u32>,
+}
+
 /// The name is the extension of the format's files. A PNG of that name is compressed for speed.
 impl Named for Format {
     const ALL: &'static [Self] = &[Self::Ppm, Self::Png(Compression::Fast)];
@@ -46,18 +55,18 @@ impl Format {
         size: [usize; 2],
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
     ) -> io::Result<()> {
-        self.write_on(None, &[], out, size, rows)
+        self.write_on(None, &About::default(), out, size, rows)
     }
 
     /// Writes a whole image as [`write`](Self::write) does, and compresses it on a renderer's threads, if there is one.
-    /// The bytes do not depend on the threads. A PNG gets texts, each with its keyword.
+    /// The bytes do not depend on the threads. Only a PNG says anything besides its pixels.
     ///
     /// # Errors
     /// Returns the errors of [`write`](Self::write).
     pub fn write_on(
         self,
         renderer: Option<&Renderer>,
-        texts: &[(&str, String)],
+        about: &About,
         mut out: impl Write,
         [width, height]: [usize; 2],
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
@@ -65,7 +74,7 @@ impl Format {
         match self {
             Self::Ppm => write_ppm(&mut out, width, height, rows),
             Self::Png(compression) => {
-                write_png(&mut out, [width, height], texts, (compression, renderer), rows)
+                write_png(&mut out, [width, height], about, (compression, renderer), rows)
             }
         }
     }
@@ -142,10 +151,15 @@ fn write_ppm(
 /// its PPM.
 pub const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
+/// Returns the number of pixels per metre that a PNG records, which is a whole number.
+pub fn per_metre(dpi: u32) -> u32 {
+    (f64::from(dpi) / 0.0254).round() as u32
+}
+
 fn write_png(
     out: &mut dyn Write,
     [width, height]: [usize; 2],
-    texts: &[(&str, String)],
+    about: &About,
     (compression, renderer): (Compression, Option<&Renderer>),
     rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
 ) -> io::Result<()> {
@@ -154,7 +168,11 @@ fn write_png(
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(AS_SHOWN);
-    for (keyword, text) in texts {
+    encoder.set_pixel_dims(about.dpi.map(|dpi| {
+        let side = per_metre(dpi);
+        png::PixelDimensions { xppu: side, yppu: side, unit: png::Unit::Meter }
+    }));
+    for (keyword, text) in about.texts {
         let (keyword, text) = (String::from(*keyword), text.clone());
         match text.is_ascii() {
             true => encoder.add_text_chunk(keyword, text)?,
@@ -188,7 +206,13 @@ mod tests {
                 for (rows, renderer) in [height, height - 1, 7].into_iter().zip(&renderers) {
                     let (mut png, bands) =
                         (Vec::new(), pixels.chunks(3 * width * rows).map(|band| Ok(band.to_vec())));
-                    let written = format.write_on(renderer.as_ref(), &[], &mut png, [width, height], bands);
+                    let written = format.write_on(
+                        renderer.as_ref(),
+                        &About::default(),
+                        &mut png,
+                        [width, height],
+                        bands,
+                    );
                     written.expect("memory takes it");
                     files.push(png);
                 }

@@ -117,6 +117,8 @@ pub struct Label {
     pub identity: Identity,
     /// The texts that a PNG records about how the image was made, each with its keyword.
     pub made: Vec<(String, String)>,
+    /// The number of pixels per inch with which the image is to be printed.
+    pub dpi: Option<u32>,
 }
 
 impl Label {
