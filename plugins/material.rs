@@ -11,7 +11,7 @@ pub static EMISSION: Pparm<Rgb> = Pparm::or(
     "the light that it gives in red, green and blue; it lights others where the camera has `bounces`",
     Rgb::ZERO,
 )
-.known_as(&["emissive", "emissivity"])
+.known_as(&["emissive", "emissivity", "glow"])
 .each(COLOUR)
 .must("0 or more in each channel", |light| light.min_element() >= 0.0)
 .not_dumped();

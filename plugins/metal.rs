@@ -32,7 +32,7 @@ inventory::submit! {
             ..Material::default()
         })
     })
-    .known_as(&["conductor"])
+    .known_as(&["conductor", "metallic", "metalness"])
 }
 
 /// The interface of metal.

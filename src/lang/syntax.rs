@@ -74,14 +74,16 @@ impl Syntax {
         if body.len() < entity.attributes().count() {
             body.push("...".to_owned());
         }
+        self.entity(entity.name, name, &body)
+    }
+
+    /// Returns the notation of an entity with these attributes.
+    pub fn entity(self, kind: &str, name: &str, body: &[String]) -> String {
+        let name = self.key(name);
         match self {
-            Self::Notes => format!("`{} {name} {{ {} }}`", entity.name, body.join("  ")),
-            Self::Toml if body == ["..."] => {
-                format!("`[{}.{}]`, followed by its attributes", entity.name, self.key(name))
-            }
-            Self::Toml => {
-                format!("`[{}.{}]`, followed by `{}`", entity.name, self.key(name), body.join("`, `"))
-            }
+            Self::Notes => format!("`{kind} {name} {{ {} }}`", body.join("  ")),
+            Self::Toml if body == ["..."] => format!("`[{kind}.{name}]`, followed by its attributes"),
+            Self::Toml => format!("`[{kind}.{name}]`, followed by `{}`", body.join("`, `")),
         }
     }
 

@@ -275,7 +275,7 @@ fn what_beginners_write_is_told_with_the_cure() {
         (
             "material blue { ambient 0.5 0.5 1",
             "metal blue { colour 1 1 1 diffuse 1 1 1",
-            "`material` has it; a metal takes",
+            "`material` and `plastic` (as `colour`) have it; a metal takes",
         ),
         ("ambient 0.5 0.5 1", "ambient rgb(255,0,51)", "write `ambient 1 0 0.2`"),
         ("ambient 0.5 0.5 1", "ambient <0.5, 0.5, 1>", "write `0.5 0.5 1`"),
@@ -287,15 +287,12 @@ fn what_beginners_write_is_told_with_the_cure() {
         ("2 -4", "2 \u{2212}4", "write `center 4 2 -4`"),
         ("sphere ball", "sphere big ball", "a name is one word: `sphere big_ball {`"),
         ("sphere ball {", "sphere ball (", "attributes go in braces: `sphere ball { ... }`"),
-        ("sphere ball {", "for i 5 { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
-        ("sphere ball {", "for i 1 3 { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
-        ("sphere ball {", "while i < 3 { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
-        ("sphere ball {", "for (i = 0; i < 5; i++) sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
+        ("sphere ball {", "while (true) { sphere ball {", "write `repeat NAME COUNT { ENTITIES }`"),
+        ("sphere ball {", "for (i = 0; i < 5; i++) sphere ball {", "write `repeat i 5 {`"),
     ] {
         fs::write(folder.path().join("a.ray"), scene.replace(from, to)).expect("a scene");
         let (status, _, said) = outcome(tabray(&folder).args(["check", "a.ray"]));
         assert!(status == 2 && said.contains(cure), "{to}: {said}");
-        assert!(!to.contains("i 1 3") || said.matches("error:").count() == 1, "{to}: {said}");
     }
     let toml = "[camera.eye]\npixeldim = [160, 120]\nworlddim = [8, 6]\nviewpoint = \"4 3 6\"\n";
     fs::write(folder.path().join("a.toml"), toml).expect("a scene");

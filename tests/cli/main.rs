@@ -10,6 +10,7 @@ mod cameras;
 mod certain;
 mod cli;
 mod colours;
+mod cures;
 mod discovery;
 mod editor;
 mod failures;

@@ -2,7 +2,7 @@
 
 use super::cures;
 use super::fault::{Fault, Place};
-use super::guesses::{find_attribute, near_attribute};
+use super::guesses::find_attribute;
 use super::names::Names;
 use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
@@ -17,9 +17,6 @@ use tabray_core::scene::pparm::AttributeValue;
 use tabray_core::scene::store::Store;
 use tabray_core::scene::value::{Datum, Type};
 use tabray_core::text::{self, list};
-
-/// The maximum number of other materials that are named because they have an attribute.
-const MAX_OTHERS: usize = 4;
 
 /// Checks an entity against the table of its type, and reports its errors and warnings.
 pub struct AttributeChecker<'c, 't> {
@@ -46,13 +43,27 @@ impl AttributeChecker<'_, '_> {
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given = vec![None; attributes.len()];
         let mut sound = !parsed.is_damaged;
-        let mut unknown = Vec::new();
+        let (mut unknown, mut split) = (Vec::new(), Vec::new());
+        // The last name of an entity, which may have further words.
+        let mut last: Option<(_, _, Vec<_>)> = None;
         for pair in parsed.attributes() {
-            let (word, _) = pair;
+            let (word, words) = pair;
             let known = find_attribute(entity, &word.text);
             match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
-                None => unknown.push(pair),
+                None => match &mut last {
+                    Some((.., further))
+                        if [word].into_iter().chain(words).all(|word| self.may_be_of_a_name(word)) =>
+                    {
+                        further.push(pair);
+                    }
+                    _ => unknown.push(pair),
+                },
                 Some(at) => {
+                    split.extend(last.take());
+                    last = match (attributes[at].value_type(), words) {
+                        (Type::Name(kind), [name]) => Some(((at, kind), name, Vec::new())),
+                        _ => None,
+                    };
                     let before: Option<(&Word<'_>, _)> = given[at].replace(pair);
                     if let Some((first, _)) = before {
                         self.report.add(
@@ -64,8 +75,22 @@ impl AttributeChecker<'_, '_> {
                 }
             }
         }
+        split.extend(last);
+        let mut in_words = Vec::new();
+        for ((at, kind), name, further) in split.into_iter().filter(|(.., further)| !further.is_empty()) {
+            sound = false;
+            let further_words = further.iter().flat_map(|(word, words)| [*word].into_iter().chain(*words));
+            let words: Vec<_> = [name].into_iter().chain(further_words).collect();
+            if self.name_of_words(kind, attributes[at], &words) {
+                given[at] = None;
+                in_words.push(attributes[at].name());
+            } else {
+                unknown.extend(further);
+            }
+        }
         sound &= unknown.is_empty();
-        let meant = self.unknown_attributes(&title, &attributes, &given, &unknown);
+        let mut meant = self.unknown_attributes(&title, &attributes, &given, &unknown);
+        meant.extend(in_words);
         sound &= self.groups(&title, &attributes, &given, &meant, parsed);
         let mut missing = Vec::new();
         let mut values = Vec::new();
@@ -133,77 +158,6 @@ impl AttributeChecker<'_, '_> {
             }
         }
         sound
-    }
-
-    /// Reports attributes that the type does not have, and returns the attributes that they probably meant.
-    fn unknown_attributes(
-        &mut self,
-        title: &str,
-        attributes: &[&'static dyn Attribute],
-        given: &[Option<(&Word<'_>, &[Word<'_>])>],
-        unknown: &[(&Word<'_>, &[Word<'_>])],
-    ) -> Vec<&'static str> {
-        let guesses = self.report.guesses();
-        let near = |word: &Word<'_>| near_attribute(self.entity, &word.text, guesses).map(|near| near.name());
-        let mut near: Vec<_> = unknown.iter().map(|(word, _)| *word).map(near).collect();
-        let missing = attributes.iter().zip(given).filter(|(attribute, given)| {
-            given.is_none() && attribute.default().is_none() && !near.contains(&Some(attribute.name()))
-        });
-        let missing: Vec<_> = missing.map(|(attribute, _)| *attribute).collect();
-        // If as many attributes are unknown as are missing, with as many numbers each, other programs use these names.
-        let strange: Vec<_> = (0..unknown.len()).filter(|index| near[*index].is_none()).collect();
-        let fits = |(index, attribute): (&usize, &&dyn Attribute)| {
-            let values = unknown[*index].1;
-            matches!(attribute.value_type(), Type::Number | Type::Whole)
-                && attribute.arity().allow(values.len())
-                && values.iter().all(|word| word.text.parse::<f64>().is_ok())
-        };
-        if strange.len() == missing.len() && strange.iter().zip(&missing).all(fits) {
-            strange.iter().zip(&missing).for_each(|(index, attribute)| near[*index] = Some(attribute.name()));
-        }
-        for ((word, _), near) in unknown.iter().zip(&near) {
-            self.unknown_attribute(title, word, *near);
-        }
-        near.into_iter().flatten().collect()
-    }
-
-    /// Reports an attribute that the type does not have, with the attribute that it probably meant, if any.
-    fn unknown_attribute(&mut self, title: &str, word: &Word<'_>, near: Option<&str>) {
-        let entity = self.entity;
-        let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
-        if let Some(near) = near {
-            fault = fault.label(format!("did you mean `{near}`?")).meant(Some(near));
-        }
-        if let (None, Some(other)) = (near, self.registry.known_as(&word.text)) {
-            let usage = self.report.syntax().entity_usage(other, "NAME");
-            self.report.add(fault.help(format!("see `{}`, {}: {usage}", other.name, other.meaning)));
-            return;
-        }
-        let names = list(entity.attributes().map(|attribute| attribute.name()));
-        let takes = format!("{} takes {names}", text::with_article(entity.name));
-        // One material stands where another does, and an object has one, and may have a shader.
-        let is_material = entity.kind() == Kind::Material;
-        let of_kind = |kind: Kind, is_there: bool| {
-            let has = move |other: &&Entity| {
-                other.kind() == kind && other.attributes().any(|attribute| attribute.name() == word.text)
-            };
-            let others = self.registry.iter().filter(|_| is_there && near.is_none()).filter(has);
-            others.map(|other| format!("`{}`", other.name)).take(MAX_OTHERS).collect::<Vec<_>>()
-        };
-        let materials = of_kind(Kind::Material, is_material || entity.refers_to(Kind::Material));
-        let shaders = of_kind(Kind::Shader, materials.is_empty() && entity.refers_to(Kind::Shader));
-        let there = match (is_material, materials.is_empty()) {
-            (true, _) => "",
-            (false, false) => ": write it there",
-            (false, true) => ": `shader` takes the name of one",
-        };
-        let others = [materials, shaders].concat();
-        let words: Vec<_> = others.iter().map(String::as_str).collect();
-        self.report.add(fault.help(match words[..] {
-            [] => takes,
-            [other] => format!("{other} has it{there}; {takes}"),
-            _ => format!("{} have it{there}; {takes}", text::and(&words)),
-        }));
     }
 
     /// Checks the values of one attribute: their type, their number and their rule.

@@ -3,6 +3,7 @@
 //! then read again without this syntax, which avoids errors that follow from it.
 
 use super::fault::{Fault, Severity};
+use super::loops;
 use super::report::Report;
 use super::tokens::{Token, TokenForm, Tokens};
 use std::collections::BTreeMap;
@@ -243,8 +244,22 @@ impl Cleaned {
         let nowhere = &mut Report::default();
         let mut tokens = Tokens::of(&text, nowhere);
         let mut run: Option<Range<usize>> = None;
+        let mut depth = 0_usize;
         while let Some(token) = tokens.step(nowhere) {
             let word = tokens.raw(token);
+            match token.form {
+                TokenForm::Open => depth += 1,
+                TokenForm::Close => depth = depth.saturating_sub(1),
+                // The marks of a loop tell what it means. An attribute may be called `repeat`.
+                _ if loops::word(word).is_some_and(|word| depth == 0 || word != "repeat") => {
+                    let end = token.start + loops::head(&text, token.start).map_or(0, str::len);
+                    while tokens.ahead[0].is_some_and(|next| next.start < end) {
+                        tokens.step(nowhere);
+                    }
+                    continue;
+                }
+                _ => {}
+            }
             let is_name = tokens.ahead[0].is_some_and(|next| next.form == TokenForm::Open);
             let is_open = run.as_ref().is_some_and(|run| {
                 let inner = &text[run.clone()];

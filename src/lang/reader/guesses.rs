@@ -1,6 +1,7 @@
 //! Finds attributes by their names, distinguishes attributes from values, and guesses the attribute that a misspelt
 //! word meant.
 
+use super::cures;
 use crate::registry::Registry;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -169,7 +170,12 @@ pub fn is_value(
         _ if looks_like_number(word) => true,
         _ => {
             let Some(table) = table else { return already < max };
-            already < max && table.find(word).is_none() && table.near(word, guesses).is_none()
+            table.find(word).is_none()
+                && if already < max {
+                    table.near(word, guesses).is_none()
+                } else {
+                    cures::is_of_a_number(word)
+                }
         }
     }
 }

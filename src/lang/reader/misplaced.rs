@@ -5,7 +5,7 @@ use tabray_core::files;
 use tabray_core::text::{nearest_file, shown};
 
 /// The extensions of supported images.
-const IMAGES: [&str; 13] =
+pub const IMAGES: [&str; 13] =
     ["ppm", "png", "pgm", "pbm", "pnm", "jpg", "jpeg", "webp", "bmp", "tif", "tiff", "hdr", "exr"];
 
 /// The maximum number of searched folders, and of files in each.

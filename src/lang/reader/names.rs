@@ -1,6 +1,7 @@
 //! The names of a scene: their entities, and the references to them.
 
 use super::fault::{Fault, Place, Severity};
+use super::files;
 use super::missing::Missing;
 use super::parsed::{Form, Word};
 use super::report::Report;
@@ -213,11 +214,20 @@ impl Names {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
                     // An entity does not refer to itself.
                     let own = if is_told { owner(store, &place, first) } else { None };
-                    let near = nearest(text, known.filter(|name| Some(*name) != own));
+                    let known: Vec<_> = known.filter(|name| Some(*name) != own).collect();
+                    let of_file = files::stem(text).filter(|stem| known.contains(stem));
+                    let near = of_file.or_else(|| nearest(text, known));
+                    let cure = files::cure(*kind, text, None, report.syntax()).filter(|_| near.is_none());
+                    let define = || match of_file {
+                        Some(_) => format!("here stands the name of the {kind}, not that of a file"),
+                        None => {
+                            format!("define it first: {}", registry.example(*kind, text, report.syntax()))
+                        }
+                    };
                     Fault::error(first.clone(), format!("there is no {kind} `{text}`"))
                         .label(suggestion(near, *count))
                         .meant(near)
-                        .help(format!("define it first: {}", registry.example(*kind, text, report.syntax())))
+                        .help(cure.unwrap_or_else(define))
                 }
             };
             report.add(fault);

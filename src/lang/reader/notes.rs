@@ -173,15 +173,10 @@ impl<'a, 'r> Grammar<'a, 'r> {
     /// Reads the next part. An entity reuses the memory of another one, if given. If `is_repeated`, a brace ends the
     /// text.
     pub fn next(&mut self, is_repeated: bool, memory: &mut Option<Parsed<'a>>) -> Option<Node<'a>> {
-        if let Some(keyword) = self.keyword() {
+        if let Some(word) = self.foreign_loop() {
+            Some(self.loop_as_meant(word))
+        } else if let Some(keyword) = self.keyword() {
             self.statement(keyword).map(Node::Statement)
-        } else if self.is_loop() {
-            self.refuse_loop();
-            self.statement(Keyword::Repeat).map(Node::Statement)
-        } else if self.is_other_loop() {
-            self.refuse_loop();
-            self.skip_block();
-            Some(Node::Stray)
         } else if is_repeated && self.is(0, TokenForm::Close) {
             self.step().map(Node::Close)
         } else if self.begins_entity() {
@@ -292,7 +287,7 @@ impl<'a, 'r> Grammar<'a, 'r> {
         self.table = self.tables.named(self.registry, &kind.text);
         // The type stands alone, before another entity.
         let is_alone = self.is_draft && self.table.is_some() && self.is_entity_type() && self.is_word(1);
-        let name = match self.token() {
+        let mut name = match self.token() {
             Some(name) if !name.is_brace() && !is_alone => {
                 self.step();
                 self.tokens.word(name)
@@ -305,10 +300,12 @@ impl<'a, 'r> Grammar<'a, 'r> {
                 Word::at("", Form::Any, first.end..first.end)
             }
         };
-        self.refuse_further_words(&kind, &name, first.end);
-        let mut bracket = None;
+        self.refuse_further_words(&kind, &mut name, first.end);
+        let (mut bracket, mut file) = (None, None);
         if self.is(0, TokenForm::Open) {
             self.step();
+        } else if !is_alone && let Some(found) = self.file_without_braces(&kind, &name) {
+            file = Some(found);
         } else if !is_alone && let Some(closing) = self.wrong_bracket(&kind, &name) {
             bracket = Some(closing);
         } else if !is_alone {
@@ -327,7 +324,13 @@ impl<'a, 'r> Grammar<'a, 'r> {
             None => memory.insert(Parsed::begin(kind, name)),
         };
         self.body = self.before.end..self.before.end;
-        while !is_alone && !self.report.has_enough() && self.body_goes_on(entity) {
+        let mut has_body = !is_alone;
+        if let Some((attribute, file)) = file {
+            entity.value(file);
+            entity.add(attribute, self.report);
+            has_body = self.is(0, TokenForm::Open) && self.step().is_some();
+        }
+        while has_body && !self.report.has_enough() && self.body_goes_on(entity) {
             if bracket
                 .is_some_and(|closing| self.token().is_some_and(|token| self.tokens.raw(token) == closing))
             {

@@ -193,9 +193,7 @@ impl<'a> Numbers<'a> {
                 }
             }
             Some(value_type)
-                if value_type.is_numeric()
-                    && word.form == Form::Any
-                    && self.by_name.contains_key(&*word.text) =>
+                if value_type.is_numeric() && word.form == Form::Any && self.is_formula_of_names(&word) =>
             {
                 let fault = Fault::error(word.place.clone(), format!("`{}` is not in quotes", word.text));
                 report.add(fault.help(format!("a formula goes in quotes: `\"{}\"`", word.text)));
@@ -218,6 +216,17 @@ impl<'a> Numbers<'a> {
             }
             _ => word,
         }
+    }
+
+    /// Tells whether a word without quotes is a named number, or a formula of some.
+    fn is_formula_of_names(&self, word: &Word<'_>) -> bool {
+        // Most words are numbers.
+        let may_name = |letter: char| letter.is_alphabetic() && !matches!(letter, 'e' | 'E');
+        self.by_name.contains_key(&*word.text)
+            || !self.all.is_empty() && word.text.contains(may_name) && {
+                let mut used = Vec::new();
+                self.formula(word, &[], &mut used).is_ok() && !used.is_empty()
+            }
     }
 
     /// Parses a word as a formula, and collects the named numbers in it.

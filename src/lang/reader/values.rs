@@ -130,7 +130,10 @@ pub fn whole(word: &str) -> Result<i64, ValueError> {
     word.parse().map_err(|_| {
         let digits = word.strip_prefix(['+', '-']).unwrap_or(word);
         let too_large = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
-        (if too_large { "too large" } else { "not a whole number" }, None)
+        let unit = word.trim_start_matches(|letter: char| letter.is_ascii_digit());
+        let has_unit = unit.len() < word.len() && unit.chars().all(char::is_alphabetic) && !too_large;
+        let help = if has_unit { meant(word) } else { None };
+        (if too_large { "too large" } else { "not a whole number" }, help)
     })
 }
 
