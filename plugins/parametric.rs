@@ -26,7 +26,7 @@ fn rises([low, high]: &[f64; 2]) -> bool {
 inventory::submit! {
     Entity::shape("parametric", "a surface by formulas of its coordinates in u and v", &[TABLE], |args| {
         let surface = Surface {
-            at: [args.get(&X), args.get(&Y), args.get(&Z)],
+            at: PointField::new([args.get(&X), args.get(&Y), args.get(&Z)]),
             ends: [args.get(&U), args.get(&V)],
             center: args.get(&CENTER),
         };
@@ -39,18 +39,19 @@ inventory::submit! {
 }
 
 struct Surface {
-    at: [PatchField; 3],
+    at: PointField,
     ends: [[f64; 2]; 2],
     center: DVec3,
 }
 
 impl Parametric for Surface {
     fn point<N: Scalar>(&self, uv: [N; 2]) -> [N; 3] {
-        per_axis(|axis| self.at[axis].at(uv) + N::constant(self.center[axis]))
+        let at = self.at.at(uv);
+        per_axis(|axis| at[axis] + N::constant(self.center[axis]))
     }
 
     fn as_written<F: Float>(&self, uv: [Interval<F>; 2]) -> Option<[Interval<F>; 3]> {
-        let seen = [0, 1, 2].map(|axis| self.at[axis].written::<F>().at(&uv));
+        let seen = [0, 1, 2].map(|axis| self.at.each()[axis].written::<F>().at(&uv));
         let is_defined = seen.iter().all(|seen| seen.is_defined() != Some(false));
         let place = |axis: usize| {
             Interval { low: seen[axis].low, high: seen[axis].high } + Interval::constant(self.center[axis])

@@ -40,6 +40,7 @@ pub use tabray_world::texture::{Alpha, Texture};
 // What a scene selects by name: shaders, profiles and other alternatives.
 pub use tabray_exact::formula::Formula;
 pub use tabray_exact::formula::field::{CurveField, Field, PatchField, SurfaceField};
+pub use tabray_exact::formula::joint::PointField;
 pub use tabray_world::choices;
 pub use tabray_world::scene::choice::{Choice, ChoiceName};
 pub use tabray_world::scene::procedural::{OnPlane, OnSphere};

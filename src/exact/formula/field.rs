@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The number of registers that is enough for most formulas of space. Setting up [`MAX_REGISTERS`] takes longer than
 /// evaluating most formulas.
-const SOME_REGISTERS: usize = 12;
+pub(super) const SOME_REGISTERS: usize = 12;
 
 /// The number of registers that is enough for most formulas of a surface, which have more variables.
 const MORE_REGISTERS: usize = 15;
@@ -151,6 +151,11 @@ impl<const COUNT: usize> FieldOf<COUNT> {
     /// Returns the formula.
     pub fn formula(&self) -> &Arc<Formula> {
         &self.formula
+    }
+
+    /// Returns the formula with fewer operations, which is evaluated.
+    pub(super) fn quick(&self) -> &Formula {
+        &self.quick
     }
 
     /// Returns the operations.

@@ -8,6 +8,7 @@ pub mod field;
 mod function;
 #[cfg(test)]
 mod inclusion;
+pub mod joint;
 pub mod nodes;
 mod own;
 mod parser;

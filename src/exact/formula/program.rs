@@ -72,12 +72,22 @@ impl Program {
     }
 
     /// Assigns a register to each value, until its last use.
-    pub fn of(Values { list: values, result }: &Values, variables: usize) -> Self {
+    pub fn of(Values { list, result }: &Values, variables: usize) -> Self {
+        Self::keeping(list, variables, [*result]).0
+    }
+
+    /// Assigns a register to each value, until its last use, or for good to some results. Returns their registers. The
+    /// first is that of the program.
+    pub fn keeping<const RESULTS: usize>(
+        values: &[Value],
+        variables: usize,
+        results: [usize; RESULTS],
+    ) -> (Self, [u8; RESULTS]) {
         let mut last_uses = vec![0; values.len()];
         for (index, value) in values.iter().enumerate() {
             value.used().iter().for_each(|used| last_uses[*used] = index);
         }
-        last_uses[*result] = values.len();
+        results.iter().for_each(|result| last_uses[*result] = values.len());
         let (mut free, mut registers) = (Vec::new(), variables);
         let mut places: Vec<usize> = (0..variables).collect();
         let mut instructions = Vec::with_capacity(values.len() - variables);
@@ -99,7 +109,8 @@ impl Program {
             places.push(place);
             instructions.push(Instruction { step: value.step, operands, result: place as u8 });
         }
-        Self { instructions, result: places[*result] as u8, registers }
+        let results = results.map(|result| places[result] as u8);
+        (Self { instructions, result: results[0], registers }, results)
     }
 
     /// Carries out the operations on values of any type, given those of the variables. `of` returns the value of an
@@ -141,7 +152,8 @@ impl Values {
         let shared = values(steps, variables, true);
         let fits = |values: &Self| Program::of(values, variables).registers <= MAX_REGISTERS;
         // Kernels compute formulas in one variable, with few registers.
-        let paired = if variables > 1 { shared.paired(variables) } else { None };
+        let paired = if variables > 1 { paired(&shared.list, variables) } else { None };
+        let paired = paired.map(|(list, places)| Self { list, result: places[shared.result] });
         if let Some(paired) = paired.filter(fits) {
             paired
         } else if fits(&shared) {
@@ -151,41 +163,63 @@ impl Values {
         }
     }
 
-    /// Returns the same values, with the sine and the cosine of a number next to each other, or `None` if there is no
-    /// such pair.
-    fn paired(&self, variables: usize) -> Option<Self> {
-        let list = &self.list;
+    /// Joins the values of several formulas in the same variables. Equal ones occur once. Returns the indices of the
+    /// formulas' results.
+    pub fn joined<const COUNT: usize>(all: [Self; COUNT], variables: usize) -> (Vec<Value>, [usize; COUNT]) {
+        let mut list = all[0].list[..variables].to_vec();
         let mut known = HashMap::new();
-        for (index, value) in list.iter().enumerate() {
-            if let Step::Call(Function::Sin | Function::Cos) = value.step {
-                known.entry(value.key()).or_insert(index);
-            }
-        }
-        let pairs = list.iter().map(|value| {
-            let other = match value.step {
-                Step::Call(Function::Sin) => Function::Cos,
-                Step::Call(Function::Cos) => Function::Sin,
-                _ => return None,
-            };
-            known.get(&Value { step: Step::Call(other), ..*value }.key()).copied()
-        });
-        let pairs: Vec<_> = pairs.collect();
-        pairs.iter().flatten().next()?;
-        let (mut places, mut order) = (vec![usize::MAX; list.len()], Vec::with_capacity(list.len()));
-        for index in 0..list.len() {
-            for index in [Some(index), pairs[index]].into_iter().flatten() {
-                if places[index] == usize::MAX {
-                    places[index] = order.len();
-                    order.push(index);
+        let results = all.map(|Self { list: own, result }| {
+            let mut places: Vec<_> = (0..variables).collect();
+            for value in &own[variables..] {
+                let value = Value { operands: value.operands.map(|of| places[of]), ..*value };
+                let place = *known.entry(value.key()).or_insert(list.len());
+                if place == list.len() {
+                    list.push(value);
                 }
+                places.push(place);
+            }
+            places[result]
+        });
+        match paired(&list, variables) {
+            Some((list, places)) => (list, results.map(|result| places[result])),
+            None => (list, results),
+        }
+    }
+}
+
+/// Returns the same values, with the sine and the cosine of a number next to each other, and their new places, or `None`
+/// if there is no such pair.
+fn paired(list: &[Value], variables: usize) -> Option<(Vec<Value>, Vec<usize>)> {
+    let mut known = HashMap::new();
+    for (index, value) in list.iter().enumerate() {
+        if let Step::Call(Function::Sin | Function::Cos) = value.step {
+            known.entry(value.key()).or_insert(index);
+        }
+    }
+    let pairs = list.iter().map(|value| {
+        let other = match value.step {
+            Step::Call(Function::Sin) => Function::Cos,
+            Step::Call(Function::Cos) => Function::Sin,
+            _ => return None,
+        };
+        known.get(&Value { step: Step::Call(other), ..*value }.key()).copied()
+    });
+    let pairs: Vec<_> = pairs.collect();
+    pairs.iter().flatten().next()?;
+    let (mut places, mut order) = (vec![usize::MAX; list.len()], Vec::with_capacity(list.len()));
+    for index in 0..list.len() {
+        for index in [Some(index), pairs[index]].into_iter().flatten() {
+            if places[index] == usize::MAX {
+                places[index] = order.len();
+                order.push(index);
             }
         }
-        let moved = |index: &usize| Value {
-            operands: if *index < variables { [0; 3] } else { list[*index].operands.map(|of| places[of]) },
-            ..list[*index]
-        };
-        Some(Self { list: order.iter().map(moved).collect(), result: places[self.result] })
     }
+    let moved = |index: &usize| Value {
+        operands: if *index < variables { [0; 3] } else { list[*index].operands.map(|of| places[of]) },
+        ..list[*index]
+    };
+    Some((order.iter().map(moved).collect(), places))
 }
 
 /// Returns the values of operations. If `are_shared`, equal values occur once.

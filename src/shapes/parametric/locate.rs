@@ -12,6 +12,9 @@ const STEPS: usize = 24;
 /// The distance, as a multiple of a surface's size, within which no part is nearer than others.
 const BLURRED: f64 = 4.0;
 
+/// The maximum number of steps after the best place so far.
+const MAX_WORSE: u32 = 2;
+
 /// A place on a surface.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
@@ -44,10 +47,8 @@ impl Located<'_> {
             let (uv, off) = self.nearest_in(at, self.tree.leaf(leaf));
             return (off <= 2.0 * distance).then_some(Place { uv, off });
         }
-        let is_near =
-            |low: DVec3, high: DVec3| (low - distance).cmple(at).all() && at.cmple(high + distance).all();
-        self.tree.visit(&|around| is_near(around.low, around.high), &mut |_, part, _| {
-            let (uv, off) = self.nearest_in(at, part);
+        self.tree.near(at, distance, |leaf| {
+            let (uv, off) = self.nearest_in(at, self.tree.leaf(leaf));
             if nearest.is_none_or(|known| off < known.off) {
                 nearest = Some(Place { uv, off });
             }
@@ -59,12 +60,16 @@ impl Located<'_> {
     fn nearest_in(&self, at: DVec3, part: &Rectangle<f64>) -> (DVec2, f64) {
         let [low, high] = [part.map(|side| side.low), part.map(|side| side.high)].map(DVec2::from);
         let mut uv = 0.5 * (low + high);
-        let mut best = (uv, f64::INFINITY);
+        let (mut best, mut worse) = ((uv, f64::INFINITY), 0);
         for _ in 0..STEPS {
             let [point, along_u, along_v] = self.patches.at(uv.to_array());
             let off = at - point;
-            if off.length() < best.1 {
+            // Where only rounding is left, steps lead back and forth.
+            worse = if off.length() < best.1 { 0 } else { worse + 1 };
+            if worse == 0 {
                 best = (uv, off.length());
+            } else if worse == MAX_WORSE {
+                break;
             }
             let (a, b, c) = (along_u.length_squared(), along_u.dot(along_v), along_v.length_squared());
             let (right, above) = (off.dot(along_u), off.dot(along_v));

@@ -2,7 +2,8 @@
 //!
 //! A plugin gives the formula, generic over the number type. A ray's hits are the solutions of two equations in u and
 //! v, for two planes through the ray. A tree of boxes finds the parts of the rectangle that a ray may hit. There,
-//! Krawczyk's test proves that there is no solution, or exactly one.
+//! Krawczyk's test proves that there is no solution, or exactly one. Bounds of the slopes of each part are kept, so that
+//! most parts without a hit take no evaluation. Where they allow only one hit, Newton's method finds it.
 //!
 //! Source: R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4 (1969);
 //! D. Toth, "On Ray Tracing Parametric Surfaces", SIGGRAPH 1985.

@@ -1,6 +1,6 @@
 //! The first hit of a line and a parametric surface.
 
-use super::krawczyk::Judged;
+use super::krawczyk::{Candidate, Judged};
 use super::patch::{Patch, Patches, PatchesIn, Rectangle};
 use super::shape::ParametricShape;
 use super::tree::Flat;
@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use tabray_exact::double_double::power_of_two;
 use tabray_exact::interval::{Float, Interval};
-use tabray_exact::scalar::Scalar;
+use tabray_exact::scalar::{Scalar, per_axis};
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::sight::Line;
 
@@ -38,6 +38,8 @@ pub(super) type LeavesOut<'s, F> = dyn Fn(Interval<F>, &Rectangle<F>, bool) -> b
 pub(super) struct Search<'s, F: Float> {
     pub(super) shape: &'s ParametricShape,
     line: &'s Line<Interval<F>>,
+    /// The axis with the largest component of the line's direction, and the two others.
+    axes: [usize; 3],
     /// Tells whether a hit does not count, given its t, the place of its u and v, and whether the place certainly has a
     /// hit.
     is_left_out: &'s LeavesOut<'s, F>,
@@ -105,7 +107,10 @@ where
         line: &'s Line<Interval<F>>,
         is_left_out: &'s LeavesOut<'s, F>,
     ) -> Self {
-        Self { shape, line, is_left_out, steps_left: Cell::new(max_steps::<F>()) }
+        let size = |axis: usize| line.dir[axis].middle().to_f64().abs();
+        let steepest = (0..3).fold(0, |most, axis| if size(axis) > size(most) { axis } else { most });
+        let axes = [steepest, (steepest + 1) % 3, (steepest + 2) % 3];
+        Self { shape, line, axes, is_left_out, steps_left: Cell::new(max_steps::<F>()) }
     }
 
     pub fn first(&self) -> Found<F> {
@@ -114,7 +119,7 @@ where
         if let Some(Aabb { low, high }) = self.shape.tree.bounds() {
             let nothing = Found { hit: None, undecided: None, narrow: None };
             let Some((entry, is_blurred)) = self.line.blurred(low, high) else { return nothing };
-            let has_no_order = is_blurred[self.axes()[0]];
+            let has_no_order = is_blurred[self.axes[0]];
             if is_blurred == [true; 3] || has_no_order && !self.line.is_exact() {
                 return Found { undecided: Some(entry), ..nothing };
             }
@@ -124,31 +129,39 @@ where
             }
         }
         let (mut waiting, mut number) = (BinaryHeap::new(), 0);
+        let mut found = Found { hit: None, undecided: None, narrow: None };
         // Tests in `f64` are faster, and come first.
         let line = Line { origin: self.line.origin.map(nearly), dir: self.line.dir.map(nearly) };
         let quick = Search::<f64>::new(self.shape, &line, &|_, _, _| false);
-        let clip = |around: &Aabb| line.clip(around.low, around.high);
-        let boxes_left = Cell::new(if blurred_from.is_some() {
-            quick.steps_left.set(8 * FEW_STEPS);
-            FEW_BOXES
-        } else {
-            usize::MAX
-        });
-        let meets = |around: &Aabb| {
-            boxes_left.set(boxes_left.get().saturating_sub(1));
-            boxes_left.get() > 0 && clip(around).is_some()
-        };
-        self.shape.tree.visit(&meets, &mut |leaf, part, around| {
-            let is_free = !quick.may_meet(self.shape.tree.flat(leaf))
-                || F::IS_LONG && matches!(quick.judged(part), Judged::Free);
-            if !is_free {
-                let from = clip(around).map_or(0.0, |(from, _)| from.next_down());
-                waiting.push(Part { from, number, leaf, part: part.map(Interval::from_f64) });
-                number += 1;
+        // Without an order, the boxes are compared one by one, as long as that tells them apart.
+        let mut boxes_left = if blurred_from.is_some() { FEW_BOXES } else { usize::MAX };
+        quick.steps_left.set(if blurred_from.is_some() { 8 * FEW_STEPS } else { max_steps::<f64>() });
+        self.shape.tree.along(&line, &mut |leaf| {
+            boxes_left -= 1;
+            if boxes_left == 0 {
+                return f64::NEG_INFINITY;
             }
+            let is_met = quick.may_meet(self.shape.tree.flat(leaf));
+            let Aabb { low, high } = *self.shape.tree.around(leaf);
+            if let Some((enters, _)) = line.clip(low, high).filter(|_| is_met) {
+                let piece = self.shape.tree.piece(&*self.shape.patches, leaf);
+                quick.candidates(piece, &mut |Candidate { part, from, single }| {
+                    let from = from.max(enters).next_down();
+                    if from > found.end() {
+                        return;
+                    }
+                    let wide = part.map(Interval::from_f64);
+                    if let Some(place) = single.and_then(|single| self.solved(&single, &wide)) {
+                        self.add(&mut found, leaf, place);
+                    } else if !(F::IS_LONG && matches!(quick.judged(&part), Judged::Free)) {
+                        waiting.push(Part { from, number, leaf, part: wide });
+                        number += 1;
+                    }
+                });
+            }
+            found.end()
         });
-        let mut found = Found { hit: None, undecided: None, narrow: None };
-        if boxes_left.get() == 0 {
+        if boxes_left == 0 {
             return Found { undecided: blurred_from, ..found };
         }
         let mut left = (if F::IS_LONG { MAX_PATCHES / 32 } else { MAX_PATCHES }).max(2 * number);
@@ -281,29 +294,22 @@ where
         patch
     }
 
-    /// Returns the axis with the largest component of the line's direction, and the two others.
-    fn axes(&self) -> [usize; 3] {
-        let size = |axis: usize| self.line.dir[axis].middle().to_f64().abs();
-        let steepest = (0..3).fold(0, |most, axis| if size(axis) > size(most) { axis } else { most });
-        [steepest, (steepest + 1) % 3, (steepest + 2) % 3]
-    }
-
     /// Encloses the t of points on the line.
-    fn t(&self, at: &[Interval<F>; 3]) -> Interval<F> {
-        let [axis, ..] = self.axes();
+    pub(super) fn t(&self, at: &[Interval<F>; 3]) -> Interval<F> {
+        let [axis, ..] = self.axes;
         (at[axis] - self.line.origin[axis]) / self.line.dir[axis]
     }
 
     /// Returns the left sides of the equations of two planes through the line.
     pub(super) fn off(&self, at: &[Interval<F>; 3]) -> [Interval<F>; 2] {
-        let from = [0, 1, 2].map(|axis| at[axis] - self.line.origin[axis]);
-        self.across(&from)
+        self.across(&per_axis(|axis| at[axis] - self.line.origin[axis]))
     }
 
     /// Returns the components of a vector along the normals of these planes.
     pub(super) fn across(&self, vector: &[Interval<F>; 3]) -> [Interval<F>; 2] {
-        let ([axis, one, other], dir) = (self.axes(), &self.line.dir);
-        [one, other].map(|side| vector[side] * dir[axis] - vector[axis] * dir[side])
+        let ([axis, one, other], dir) = (self.axes, &self.line.dir);
+        let along = |side: usize| vector[side] * dir[axis] - vector[axis] * dir[side];
+        [along(one), along(other)]
     }
 
     /// Tells whether a place is wide enough to be cut.
@@ -353,6 +359,11 @@ pub(super) fn meet<F: Float>(one: &Rectangle<F>, other: &Rectangle<F>) -> bool {
 }
 
 impl<F: Float> Found<F> {
+    /// Returns the t beyond which nothing matters.
+    fn end(&self) -> f64 {
+        self.hit.map_or(f64::INFINITY, |hit| hit.t.high.to_f64().next_up())
+    }
+
     fn doubt(&mut self, from: F) {
         let from = from.max(F::of(0.0));
         self.undecided = Some(self.undecided.map_or(from, |known| known.min(from)));

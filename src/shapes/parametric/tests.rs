@@ -1,6 +1,7 @@
 //! The steps that a search takes, counted by the evaluations of the surface.
 
 use super::*;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tabray_exact::dual::Dual;
 use tabray_exact::scalar::Scalar;
@@ -94,4 +95,50 @@ fn a_point_that_may_be_anywhere_is_located_in_one_part() {
     assert!(!shape.is_near(DVec3::new(1e60, -9.0, 0.0), 1e50));
     let count = counts[0].load(Ordering::Relaxed);
     assert!(count < 100, "{count} evaluations");
+}
+
+/// Boy's surface, as Bryant and Kusner parametrize it, and the number of its evaluations.
+struct Boy(&'static AtomicUsize);
+
+impl Parametric for Boy {
+    fn point<N: Scalar>(&self, [u, v]: [N; 2]) -> [N; 3] {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        let (root, double) = (N::constant(2.0).sqrt(), |angle: N| angle.scaled(2.0));
+        let over = N::constant(2.0) - root * u.scaled(3.0).sin() * double(v).sin();
+        let squared = v.cos() * v.cos();
+        let x = root * squared * double(u).cos() + u.cos() * double(v).sin();
+        let z = root * squared * double(u).sin() - u.sin() * double(v).sin();
+        [x / over, squared.scaled(3.0) / over, z / over]
+    }
+
+    fn ends(&self) -> [[f64; 2]; 2] {
+        [[-FRAC_PI_2, FRAC_PI_2], [0.0, PI]]
+    }
+}
+
+/// Most of the parts that a ray comes near are told apart by what is already known of them.
+#[test]
+fn rays_at_a_surface_that_crosses_itself_evaluate_it_seldom() {
+    let count: &'static AtomicUsize = Box::leak(Box::default());
+    let patches: Box<dyn Patches> = Box::new(Boy(count));
+    let tree = Tree::new(&*patches, Boy(count).ends());
+    let bounds = tree.bounds().expect("a box");
+    let shape = ParametricShape { patches, tree, bounds };
+    let origin = DVec3::new(4.0, 3.5, 6.0);
+    let cast = || {
+        count.store(0, Ordering::Relaxed);
+        let hits = (0..10_000).filter(|index| {
+            let [x, y] = [index % 100, index / 100].map(|place| f64::from(place) / 25.0 - 2.0);
+            let dir = (DVec3::new(x, y + 1.2, -0.7 * x) - origin).normalize();
+            let FirstHit { distance, is_certain } = shape.first_hit(&Ray { origin, dir }, &RayRange::ALL);
+            assert!(is_certain, "{x} {y}");
+            distance != MISS
+        });
+        (hits.count(), count.load(Ordering::Relaxed))
+    };
+    let [first, second] = [cast(), cast()];
+    assert_eq!(first.0, second.0);
+    assert!(first.0 > 4000, "{first:?}");
+    // It is 32 a ray where each part is evaluated anew.
+    assert!(first.1 < 20 * 10_000 && second.1 < 15 * 10_000, "{first:?} {second:?}");
 }
