@@ -126,15 +126,14 @@ impl RayTrial<'_> {
             let ray = Ray { origin, dir: way.normalize() };
             let distance = self.distance_in_range(&ray, &RayRange::ALL)?;
             let is_farther = |slack: f64| distance > way.length() + slack;
-            // What a search gives up on, its proof leaves open: a missing hit there is no promise that none exists.
+            // What a search gives up on, its proof leaves open: a hit that it misses there, or one farther away that it
+            // finds, is no promise that none comes before.
             let is_open = || {
                 let proven = self.shape.certify(&Sight::along(&ray), Precision::Double);
                 matches!(proven, Enclosure::Doubtful(low) if low.to_f64() < way.length())
             };
-            if distance == MISS && self.shape.is_certified() && is_open() {
-                continue;
-            }
-            if is_farther(0.0) && is_farther(self.tolerance(&ray, &RayRange::ALL, distance)) {
+            let is_too_far = is_farther(0.0) && is_farther(self.tolerance(&ray, &RayRange::ALL, distance));
+            if is_too_far && !(self.shape.is_certified() && is_open()) {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
                     met.at,
