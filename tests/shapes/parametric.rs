@@ -209,3 +209,26 @@ fn a_tube_around_a_circle_is_a_torus() {
         assert!(found == expected || (found - expected).abs() < 1e-9, "{ray:?}: {found} {expected}");
     }
 }
+
+/// Where parts of a surface were tested one by one, some hits were left in places as wide as a part.
+#[test]
+fn a_thin_tube_is_hit_at_its_radius() {
+    let text = "tube t { material m x \"0.06*sin(3*t)\" y \"1.45*t\" z -0.08 t 0 1 radius 0.022 }";
+    let model = scene(text);
+    let shape = &model.objects[0].shape;
+    for toward in [
+        DVec3::new(0.080779278717499209, -0.41341209282874825, -3.686615306384831),
+        DVec3::new(0.069041046402236822, -0.023628672636087034, -3.691862525307287),
+    ] {
+        let ray = Ray { origin: DVec3::new(0.0, 1.1, 3.6), dir: toward.normalize() };
+        let Enclosure::Hits(at) = shape.certify(&Sight::along(&ray), Precision::Double) else {
+            panic!("{ray:?}")
+        };
+        let found = shape.distance(&ray, &RayRange::ALL);
+        assert!(at.width().to_f64() < 1e-9, "{at:?}");
+        let axis = |t: f64| DVec3::new(0.06 * libm::sin(3.0 * t), 1.45 * t, -0.08);
+        let off = (0..1_000_000).map(|step| ray.at(found).distance(axis(f64::from(step) / 1e6)));
+        let off = off.fold(f64::INFINITY, f64::min) - 0.022;
+        assert!(off.abs() < 1e-9, "{ray:?}: {off} off the surface");
+    }
+}
