@@ -32,7 +32,7 @@ pub fn png(painting: &Painting) -> Result<Vec<u8>, String> {
 pub fn exr(painting: &Painting) -> Result<Vec<u8>, String> {
     let Whole { size, colours, .. } = painting.whole()?;
     let mut out = Vec::new();
-    let written = FullRange::Exr.write(&mut out, size, colours);
+    let written = FullRange::Exr.write(&mut out, size, colours, None);
     written.map_err(|error| error.to_string()).map(|()| out)
 }
 

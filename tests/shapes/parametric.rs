@@ -217,8 +217,8 @@ fn a_thin_tube_is_hit_at_its_radius() {
     let model = scene(text);
     let shape = &model.objects[0].shape;
     for toward in [
-        DVec3::new(0.080779278717499209, -0.41341209282874825, -3.686615306384831),
-        DVec3::new(0.069041046402236822, -0.023628672636087034, -3.691862525307287),
+        DVec3::new(0.080_779_278_717_499_21, -0.41341209282874825, -3.686615306384831),
+        DVec3::new(0.069_041_046_402_236_82, -0.023628672636087034, -3.691862525307287),
     ] {
         let ray = Ray { origin: DVec3::new(0.0, 1.1, 3.6), dir: toward.normalize() };
         let Enclosure::Hits(at) = shape.certify(&Sight::along(&ray), Precision::Double) else {
