@@ -4,6 +4,7 @@
 //! without an image here, and servers without sockets in the crates of the pages. They are compiled without
 //! `cfg(fuzzing)`, under which the decoder of PNGs would check nothing.
 
+use crate::files::provenance::Provenance;
 use crate::options::size::Region;
 use crate::rendering::resume::{self, ResumedImage};
 use sha2::{Digest, Sha256};
@@ -25,7 +26,7 @@ impl Image {
     /// Begins the image of a model.
     pub fn new(model: &Model) -> Option<Self> {
         let part = Region::whole(&model.camera.value);
-        let label = resume::label(model, &part, Format::Ppm, &[]).ok()?;
+        let label = resume::label(model, &part, Format::Ppm, &Provenance::default()).ok()?;
         Some(Self { label, part })
     }
 
