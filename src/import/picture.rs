@@ -12,8 +12,10 @@ const SIMILAR: f64 = 1e-5;
 /// The extent of a picture without a clip from the middle, in heights of the picture.
 const DEEP: f64 = 5.0;
 
-/// The samples of each pixel. A surface is first to be seen in a second or two.
+/// The samples of each pixel, and the operations in formulas up to which there are so many. A surface is first to be seen
+/// in a second or two.
 const SAMPLES: u32 = 4;
+const SHORT: usize = 60;
 
 /// A picture, in its own coordinates: x right, y up and z toward the viewer.
 pub struct Picture {
@@ -132,9 +134,14 @@ impl Picture {
             let _ = writeln!(text, "let {name}(x, y, z) \"{formula}\"");
         }
         let [wide, high] = self.pixels;
+        let formulas = self.surfaces.iter().map(|surface| &surface.formula.text);
+        let formulas = formulas.chain(self.functions.iter().map(|(_, formula)| formula));
+        let operations: usize =
+            formulas.map(|formula| formula.matches(['+', '-', '*', '/', '^']).count()).sum();
+        let samples = if operations > SHORT { 1 } else { SAMPLES };
         let _ = writeln!(
             text,
-            "\northographic eye\n{{\n    pixeldim {wide} {high}\n    position {}\n    target   {}\n    up       {}\n    width    {}\n    samples  {SAMPLES}               # `--size 1000 --samples 16` shows more\n    \
+            "\northographic eye\n{{\n    pixeldim {wide} {high}\n    position {}\n    target   {}\n    up       {}\n    width    {}\n    samples  {samples}               # `--size 1000 --samples 16` shows more\n    \
              transfer linear           # colours are bytes there\n}}\n\nbackground behind {{ colour {} }}\n",
             point(at(DVec3::new(0.0, 0.0, far))),
             point(at(DVec3::ZERO)),

@@ -283,3 +283,13 @@ fn each_value_of_a_variable_has_its_own_name() {
         assert!(text.contains(line), "{line}: {text}");
     }
 }
+
+#[test]
+fn a_long_formula_is_first_shown_with_fewer_samples() {
+    for (terms, samples) in [(1, "samples  4 "), (40, "samples  1 ")] {
+        let formula = vec!["x^2*y"; terms].join("+");
+        let surface = format!("#Surfer\nsurface_equation={formula}-1\n");
+        let (text, ..) = imported("long.jsurf", &surface);
+        assert!(text.contains(samples) && text.contains("`--size 1000 --samples 16` shows more"), "{text}");
+    }
+}
