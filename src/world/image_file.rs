@@ -1,5 +1,6 @@
 //! Image files of any format, decoded to texels within a limit of memory.
 
+use crate::bmp_file;
 use crate::display::Display;
 use crate::exr_file;
 use crate::files::ImageBytes;
@@ -109,6 +110,14 @@ fn decode_from(
         return Ok((texels, remarks));
     }
     bytes.rewind().map_err(|error| text::reason(&error))?;
+    let beginning = bytes.fill_buf().map_err(|error| text::reason(&error))?;
+    if format == ImageFormat::Bmp && bmp_file::has_four_masks(beginning) {
+        let mut all = Vec::new();
+        bytes.read_to_end(&mut all).map_err(|error| text::reason(&error))?;
+        let later = bmp_file::with_later_header(&all).ok_or("it ends early")?;
+        let most = most.saturating_sub(length + later.len() as u64);
+        return decode(&later, is_opaque, display, most);
+    }
     let mut reader = ImageReader::with_format(bytes, format);
     reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(cannot)?;

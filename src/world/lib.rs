@@ -14,6 +14,7 @@ pub mod any_shape;
 pub mod background;
 pub mod ball;
 pub mod bent;
+mod bmp_file;
 pub mod body;
 pub mod camera;
 pub mod certify;

@@ -286,6 +286,22 @@ mod tests {
         assert!(near(bytes_at(&texture, [2, 1])));
     }
 
+    /// A BMP may have masks for red, green, blue and alpha after its first header.
+    #[test]
+    fn a_bmp_with_four_masks_after_its_first_header_is_read() {
+        let folder = TempDir::new().expect("a folder");
+        let head = [40_u32, 2, 1, 0x0020_0001, 6, 8, 0, 0, 0, 0];
+        let masks = [0xff00_0000, 0x0000_ff00, 0x0000_00ff, 0x00ff_0000];
+        let numbers = [&[78, 0, 70][..], &head, &masks, &[0x64ff_5ac8, 0x00ff_0000]].concat();
+        let mut bytes = b"BM".to_vec();
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        let read = texture(&folder, "a.bmp", &bytes);
+        assert_eq!([[0, 0], [1, 0]].map(|at| bytes_at(&read, at)), [[100, 90, 200], [0, 0, 0]]);
+        for end in 0..bytes.len() {
+            assert!(texture(&folder, "a.bmp", &bytes[..end]).load().is_err(), "{end}");
+        }
+    }
+
     #[test]
     fn an_image_that_takes_too_much_memory_is_refused_before_it_is_decoded() {
         let folder = TempDir::new().expect("a folder");
