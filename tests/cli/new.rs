@@ -1,6 +1,6 @@
 //! `tabray new`: what it writes works at once, and no existing file is overwritten.
 
-use crate::common::program::{folder, names_in, outcome, tabray};
+use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use crate::common::{load, render, snapshots};
 use std::fs;
 use std::path::Path;
@@ -185,6 +185,40 @@ fn a_new_scene_shows_a_model_as_its_file_says() {
         assert_eq!(text.contains("    materials   file "), is_shown, "{text}");
         assert!(!text.contains("normals     file"), "{text}");
     }
+}
+
+/// The edges along its tube are of up to 50 degrees.
+#[test]
+fn a_new_scene_of_the_knot_is_smooth_and_warns_of_nothing() {
+    let folder = folder();
+    let knot = scene("models/knot.obj");
+    fs::copy(&knot, folder.path().join("knot.obj")).expect("a copy");
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "knot", "--mesh", "knot.obj"]));
+    assert_eq!((status, err.lines().count()), (0, 1), "{err}");
+    let (status, _, err) = outcome(tabray(&folder).args(["check", "knot.ray"]));
+    assert_eq!((status, err.as_str()), (0, "knot.ray: no errors\n"));
+    let text = fs::read_to_string(folder.path().join("knot.ray")).expect("a scene");
+    let looks: Vec<_> = ["red", "ivory"].map(|name| format!("material {name} {{ diffuse ")).into();
+    assert!(looks.iter().all(|look| text.contains(look)) && text.contains("crease      50 "), "{text}");
+}
+
+#[test]
+fn a_new_scene_has_the_camera_and_the_lights_of_a_binary_file_too() {
+    let folder = folder();
+    let mut json = STAGED.as_bytes().to_vec();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let length = |bytes: usize| u32::try_from(bytes).expect("a few").to_le_bytes();
+    let chunk = [&length(json.len())[..], b"JSON", &json].concat();
+    let file = [&b"glTF\x02\0\0\0"[..], &length(12 + chunk.len()), &chunk].concat();
+    fs::write(folder.path().join("a.glb"), file).expect("a file");
+    fs::write(folder.path().join("b.gltf"), STAGED).expect("a file");
+    let [binary, text] = [("a", "a.glb"), ("b", "b.gltf")].map(|(name, file)| {
+        let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", name, "--mesh", file]));
+        assert_eq!(status, 0, "{err}");
+        fs::read_to_string(folder.path().join(name).with_extension("ray")).expect("a scene")
+    });
+    assert!(binary.contains("light lamp1") && binary.contains("sun lamp2"), "{binary}");
+    assert_eq!(binary.replace("a.glb", "b.gltf"), text);
 }
 
 #[test]

@@ -17,12 +17,11 @@ use tabray_lang::syntax::Syntax;
 /// Half of the diagonal of the box around the mesh in the scene, in world units.
 const HALF: f64 = 2.0;
 
-/// From the middle of the mesh toward the viewer, toward the lamp and toward a weaker one.
+/// From the middle of the mesh toward the viewer and toward the lamp.
 const VIEWER: DVec3 = DVec3::new(0.6, 0.75, 1.0);
 const LAMP: DVec3 = DVec3::new(-0.7, 1.2, 0.6);
-const FILL: DVec3 = DVec3::new(1.0, 0.5, 0.5);
 
-/// The distance of the lamps from the middle of the mesh, in world units.
+/// The distance of the lamp from the middle of the mesh, in world units.
 const FAR: f64 = 8.0;
 
 /// The tangents of half the angles of view: 40 degrees across, and the height three quarters of the width.
@@ -30,6 +29,9 @@ const TANGENTS: [f64; 2] = [0.363_970, 0.272_978];
 
 /// The part of the image's width or height that the mesh fills.
 const FILLED: f64 = 0.8;
+
+/// How many names of materials in a file are given colours.
+const MOST_NAMES: usize = 64;
 
 /// Returns the text of a scene in a file, which shows the mesh of another file.
 pub fn text(registry: &Registry, file: &Path, scene: &Path, syntax: Syntax) -> Result<String, Failure> {
@@ -73,10 +75,9 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
             .replace("@TARGET@", &point(target)),
     };
     let lamps = if staging.lamps.is_empty() {
-        let at = |toward: DVec3| point(target + FAR * toward.normalize());
         include_str!("templates/mesh_lamps.ray")
-            .replace("@LAMP_AT@", &at(LAMP))
-            .replace("@FILL_AT@", &at(FILL))
+            .replace("@LAMP_AT@", &point(target + FAR * LAMP.normalize()))
+            .replace("@TARGET@", &point(target))
     } else {
         own_lamps(&staging.lamps, &placed, scale, target)
     };
@@ -93,6 +94,7 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
         ("SCALE", [scale.as_str(); 3].join(" ")),
         ("ROTATION", if is_upright { "0 0 0" } else { "-90 0 0" }.to_owned()),
         ("OWN", own),
+        ("NAMES", if surface.has_looks() { String::new() } else { named(&surface.materials) }),
         ("UP", if is_upright { "y" } else { "z" }.to_owned()),
         ("TRANSLATION", point(translation)),
     ];
@@ -100,6 +102,30 @@ fn in_notes(file: &Path, scene: &Path) -> Result<String, Failure> {
     Ok(words
         .iter()
         .fold(template.to_owned(), |text, (word, value)| text.replace(&format!("@{word}@"), value)))
+}
+
+/// Writes a material for each name in a file that does not say how it looks, in colours that can be told apart.
+fn named(names: &[String]) -> String {
+    let used = ["metal", "grey"];
+    let names =
+        names.iter().filter(|name| !name.is_empty() && !used.contains(&name.as_str())).take(MOST_NAMES);
+    let text: String = names
+        .enumerate()
+        .map(|(index, name)| {
+            let turn = |third: f64| {
+                0.6 + 0.15 * libm::cos(std::f64::consts::TAU * (0.382 * index as f64 - third / 3.0))
+            };
+            let colour = point(DVec3::new(turn(0.0), turn(1.0), turn(2.0)));
+            format!(
+                "material {} {{ diffuse {colour}  specular 0.12  shininess 40 }}\n",
+                Syntax::Notes.key(name)
+            )
+        })
+        .collect();
+    if text.is_empty() {
+        return text;
+    }
+    format!("# The names of materials in the file, which does not say how they look.\n{text}\n")
 }
 
 /// Writes the viewer of a file. `placed` leads from its coordinates to those of the scene, where `middle` is the middle
