@@ -100,8 +100,8 @@ impl Parts {
         let (format, full_range) = (Format::of(image), FullRange::of(image));
         let (extension, is_right) = match self.label.what {
             PixelFormat::Ppm => ("ppm", matches!(format, Some(Format::Ppm))),
-            PixelFormat::Png(_) => ("png", matches!(format, Some(Format::Png(_)))),
-            PixelFormat::Exr => ("exr", matches!(full_range, Some(FullRange::Exr))),
+            PixelFormat::Png(_) | PixelFormat::PngAlpha(_) => ("png", matches!(format, Some(Format::Png(_)))),
+            PixelFormat::Exr | PixelFormat::ExrAlpha => ("exr", matches!(full_range, Some(FullRange::Exr))),
             PixelFormat::Pfm => ("pfm", matches!(full_range, Some(FullRange::Pfm))),
             PixelFormat::Beside(..) => return Ok(()),
         };
@@ -124,8 +124,10 @@ impl Parts {
         let start = Instant::now();
         match self.label.what {
             PixelFormat::Ppm => self.bytes(path, Format::Ppm, renderer)?,
-            PixelFormat::Png(compression) => self.bytes(path, Format::Png(compression), renderer)?,
-            PixelFormat::Exr => self.full_range(path, FullRange::Exr)?,
+            PixelFormat::Png(compression) | PixelFormat::PngAlpha(compression) => {
+                self.bytes(path, Format::Png(compression), renderer)?
+            }
+            PixelFormat::Exr | PixelFormat::ExrAlpha => self.full_range(path, FullRange::Exr)?,
             PixelFormat::Pfm => self.full_range(path, FullRange::Pfm)?,
             PixelFormat::Beside(aov, compression, setting) => {
                 let format = compression.map_or(Format::Ppm, Format::Png);
@@ -140,8 +142,7 @@ impl Parts {
                     let output = self.open(&path)?;
                     aov::write_numbers(&layer, (format, path, output), self.label.size)?;
                 }
-                let (rows, about) =
-                    (iter::once(Ok(layer.bytes)), About { dpi: self.label.dpi, ..About::default() });
+                let (rows, about) = (iter::once(Ok(layer.bytes)), self.about());
                 return output::write_image(path, self.open(path)?, |out| {
                     format.write_on(None, &about, out, self.label.size, rows)
                 });
@@ -153,6 +154,11 @@ impl Parts {
             messages::note(&format!("wrote {shown} ({width} x {height} pixels, of {parts}, {seconds:.2} s)"));
         }
         Ok(())
+    }
+
+    /// Returns what the file of the image says, without texts.
+    fn about(&self) -> About<'static> {
+        About { texts: &[], dpi: self.label.dpi, alpha: self.label.what.has_alpha() }
     }
 
     /// Opens a file to write, which must not be a part.
@@ -172,7 +178,7 @@ impl Parts {
         let size = self.label.size;
         let (mut out, mut broken) = (BufWriter::with_capacity(1 << 16, self.open(path)?), None);
         let progress = Progress::new(size[1].div_ceil(TILE));
-        let rows = self.rows(3).map(|rows| {
+        let rows = self.rows(self.label.what.pixel()).map(|rows| {
             progress.step();
             rows.map_err(|failure| {
                 broken = Some(failure);
@@ -181,7 +187,7 @@ impl Parts {
         });
         let made: Vec<_> =
             self.label.made.iter().map(|(keyword, text)| (keyword.as_str(), text.clone())).collect();
-        let about = About { texts: &made, dpi: self.label.dpi };
+        let about = About { texts: &made, ..self.about() };
         let written = format.write_on(Some(renderer), &about, &mut out, size, rows);
         progress.end();
         match broken {
@@ -194,11 +200,11 @@ impl Parts {
         let [width, height] = self.label.size;
         memory::refuse_too_large(bands::PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
         let out = self.open(path)?;
-        let bytes = self.all(12)?;
+        let bytes = self.all(self.label.what.pixel())?;
         let pixels: Vec<f32> = bytes.as_chunks().0.iter().map(|number| f32::from_le_bytes(*number)).collect();
         drop(bytes);
         let mut out = BufWriter::new(out);
-        let written = format.write(&mut out, self.label.size, &pixels, self.label.dpi);
+        let written = format.write(&mut out, self.label.size, &pixels, &self.about());
         output::finished(path, written, out)
     }
 

@@ -145,13 +145,8 @@ impl Args {
         let (set, mut whole) = (self.set.values.clone(), None);
         self.set.set_by = self.frames.set_by();
         let frames = self.frames.of(&path, &mut whole)?;
-        let full_range = self.full_range(&path);
         if frames.is_none() {
-            let format = match full_range {
-                Some(_) => Format::Png(self.compress),
-                None => format_of(self.format, &path, self.compress)?,
-            };
-            self.print.dpi(&path, format, full_range)?;
+            self.print.dpi(&path, self.format_of(&path)?)?;
         }
         self.cpu.cpu()?;
         let mut frames = frames.unwrap_or_else(|| vec![Frame { path, sets: Vec::new() }]);
@@ -163,6 +158,7 @@ impl Args {
             let mut model = input::print_warnings(loaded)?.model;
             self.samples.apply(&mut model.camera.value)?;
             self.size.apply(&mut model.camera.value)?;
+            self.print.apply_alpha(&frame.path, self.format_of(&frame.path)?, &mut model.camera)?;
             self.refuse_sources(&frame.path, &scene, &model)?;
         }
         Ok(self.frames.frames)
@@ -171,6 +167,14 @@ impl Args {
     /// Returns the extension of an image whose name derives from its scene's.
     fn extension(&self) -> &'static str {
         if self.format == Some(Format::Ppm) { "ppm" } else { "png" }
+    }
+
+    /// Returns the format of an image of bytes, and of those beside any image, and that of one of full range.
+    fn format_of(&self, path: &Path) -> Result<(Format, Option<FullRange>), Failure> {
+        match self.full_range(path) {
+            Some(full_range) => Ok((Format::Png(self.compress), Some(full_range))),
+            None => format_of(self.format, path, self.compress).map(|format| (format, None)),
+        }
     }
 
     /// Returns the format of an image of full range.

@@ -24,14 +24,16 @@ use tabray_core::text::{self, count};
 use tempfile::NamedTempFile;
 
 /// An image. Its light is an array of shape (height, width, 3), float64: red, green and blue, in rows from the top.
-/// `numpy.asarray` accepts an image.
+/// `numpy.asarray` accepts an image. If it is transparent where it shows no object, the shape is (height, width, 4): alpha
+/// is the last channel, and the light is that of the objects alone, premultiplied.
 ///
 /// The light is linear, before tone, transfer curve and rounding. Under the notes' rules, it includes the exposure.
 #[pyclass(frozen, module = "tabray")]
 pub struct Image {
     size: [usize; 2],
-    /// Red, green and blue of each pixel: the bytes of an image file.
+    /// Red, green and blue of each pixel, and alpha if there is any: the bytes of an image file.
     bytes: Vec<u8>,
+    has_alpha: bool,
     /// The light.
     #[pyo3(get)]
     array: Py<PyArray3<f64>>,
@@ -52,6 +54,8 @@ pub struct Wanted {
     pub size: Option<[usize; 2]>,
     /// The number of samples of each pixel; the scene's if not given.
     pub samples: Option<u32>,
+    /// Whether the image is transparent where it shows no object; the scene's choice if not given.
+    pub alpha: Option<bool>,
     pub depth: bool,
     pub objects: bool,
     pub normals: bool,
@@ -65,27 +69,40 @@ pub fn render(py: Python<'_>, model: &Model, wanted: &Wanted, how: &How) -> PyRe
     let own = &model.camera.value;
     let size = wanted.size.unwrap_or(own.pixels);
     let [width, height] = size;
+    let has_alpha = wanted.alpha.unwrap_or(own.alpha);
     let flaws = Mutex::new(Flaws::default());
     let made = how.run(py, height, |renderer, progress| {
         // What may be left out of an image depends on its size.
         let mut plan = if size == own.pixels { Plan::for_picture(model) } else { Plan::new(model) };
         (plan.camera.pixels, plan.camera.samples) = (size, wanted.samples.unwrap_or(own.samples));
+        plan.camera.alpha = has_alpha;
         let add = |part: Flaws| flaws.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
         let overseer = RenderCallbacks { stops: &|| progress.stops(), row: &|| progress.step(1) };
         let part = [&(0..width), &(0..height)];
-        let light = renderer.light(&plan, part, overseer, &add, &|light| light.to_array())?;
+        let seen_light = |light: DVec3, alpha: f64| light.extend(alpha).to_array();
+        let light = renderer.light(&plan, part, overseer, &add, &seen_light)?;
         let is_seen = wanted.depth || wanted.objects || wanted.normals;
         let seen = if is_seen { seen(renderer, &plan, &|| progress.stops())? } else { Vec::new() };
         let display = plan.camera.display();
-        let bytes = light.iter().flat_map(|light| display.bytes(DVec3::from(*light))).collect::<Vec<_>>();
-        let of = |light: [f64; 3]| display.full_range(DVec3::from(light)).to_array();
-        let light = light.into_iter().map(of).collect::<Vec<_>>().into_flattened();
+        let colour = |[red, green, blue, _]: [f64; 4]| DVec3::new(red, green, blue);
+        let bytes = match has_alpha {
+            true => {
+                light.iter().flat_map(|light| display.bytes_with_alpha(colour(*light), light[3])).collect()
+            }
+            false => light.iter().flat_map(|light| display.bytes(colour(*light))).collect::<Vec<_>>(),
+        };
+        let of = |light: [f64; 4]| display.full_range(colour(light));
+        let light: Vec<f64> = match has_alpha {
+            true => light.iter().flat_map(|light| of(*light).extend(light[3]).to_array()).collect(),
+            false => light.iter().flat_map(|light| of(*light).to_array()).collect(),
+        };
         Some((light, bytes, seen))
     })?;
     // Only an exception ends rendering early, and `run` returns it.
     let (light, bytes, seen) = made.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
     warn(py, &flaws.into_inner().unwrap_or_else(PoisonError::into_inner))?;
     let (flat, deep) = ((height, width), (height, width, 3));
+    let channels = if has_alpha { 4 } else { 3 };
     let wrong = |error: numpy::ndarray::ShapeError| PyValueError::new_err(error.to_string());
     let depth = wanted.depth.then(|| seen.iter().map(|seen| seen.0).collect());
     let depth = depth.map(|depth| Array2::from_shape_vec(flat, depth)).transpose().map_err(wrong)?;
@@ -96,7 +113,11 @@ pub fn render(py: Python<'_>, model: &Model, wanted: &Wanted, how: &How) -> PyRe
     Ok(Image {
         size,
         bytes,
-        array: Array3::from_shape_vec(deep, light).map_err(wrong)?.into_pyarray(py).unbind(),
+        has_alpha,
+        array: Array3::from_shape_vec((height, width, channels), light)
+            .map_err(wrong)?
+            .into_pyarray(py)
+            .unbind(),
         depth: depth.map(|depth| depth.into_pyarray(py).unbind()),
         objects: objects.map(|objects| objects.into_pyarray(py).unbind()),
         normals: normals.map(|normals| normals.into_pyarray(py).unbind()),
@@ -136,9 +157,14 @@ fn warn(py: Python<'_>, flaws: &Flaws) -> PyResult<()> {
 }
 
 impl Image {
+    /// Returns what a file says besides the pixels.
+    fn about(&self, dpi: Option<u32>) -> About<'static> {
+        About { texts: &[], dpi, alpha: self.has_alpha }
+    }
+
     /// Encodes the image in this format.
     fn encoded(&self, format: Format, dpi: Option<u32>) -> io::Result<Vec<u8>> {
-        let (mut file, about) = (Vec::new(), About { dpi, ..About::default() });
+        let (mut file, about) = (Vec::new(), self.about(dpi));
         format.write_on(None, &about, &mut file, self.size, iter::once(Ok(self.bytes.clone())))?;
         Ok(file)
     }
@@ -147,7 +173,7 @@ impl Image {
         let array: PyReadonlyArray3<'_, f64> = self.array.bind(py).try_readonly()?;
         let numbers: Vec<f32> = array.as_array().iter().map(|number| *number as f32).collect();
         let mut file = Vec::new();
-        format.write(&mut file, self.size, &numbers, dpi)?;
+        format.write(&mut file, self.size, &numbers, &self.about(dpi))?;
         Ok(file)
     }
 }
@@ -167,15 +193,16 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 impl Image {
     /// Writes the image to a file, in the format of the file name's ending. .png and .ppm have the bytes that the
     /// command line writes; .exr and .pfm have the light, as float32. An existing file is replaced when the new one
-    /// is complete. `dpi` records in a .png or an .exr with how many pixels per inch the image is to be printed.
+    /// is complete. A transparent image is a .png, whose alpha is not premultiplied, or an .exr, where it is. `dpi` records in a .png or an .exr with how many pixels per inch the image is to be printed.
     #[pyo3(signature = (path, *, dpi=None))]
     fn save(&self, py: Python<'_>, path: PathBuf, dpi: Option<u32>) -> PyResult<()> {
         if dpi.is_some_and(|dpi| !(1..=100_000).contains(&dpi)) {
             return Err(PyValueError::new_err("`dpi` is a whole number from 1 to 100000"));
         }
         let bytes = match (Format::of(&path), FullRange::of(&path)) {
-            (Some(Format::Ppm), _) | (_, Some(FullRange::Pfm)) if dpi.is_some() => {
-                let told = format!("`{}` cannot record `dpi`: end it in .png or .exr", text::shown(&path));
+            (Some(Format::Ppm), _) | (_, Some(FullRange::Pfm)) if dpi.is_some() || self.has_alpha => {
+                let what = if dpi.is_some() { "record `dpi`" } else { "be transparent" };
+                let told = format!("`{}` cannot {what}: end it in .png or .exr", text::shown(&path));
                 return Err(PyValueError::new_err(told));
             }
             (Some(format), _) => self.encoded(format, dpi)?,

@@ -198,13 +198,13 @@ fn accuracy(name: &str) -> PyResult<Accuracy> {
 
 #[pymethods]
 impl Scene {
-    /// Renders the image. Width and height in pixels, the samples of each pixel and the method ("exact", "strict",
-    /// "draft" or "classic") are the scene's own by default. If only width or only height is given, the other
-    /// follows. `depth`, `objects` and `normals` add arrays of these. `progress` is called with the numbers of
+    /// Renders the image. Width and height in pixels, the samples of each pixel, the method ("exact", "strict",
+    /// "draft" or "classic") and whether the image is transparent where it shows no object, `alpha`, are the scene's own
+    /// by default. If only width or only height is given, the other follows. `depth`, `objects` and `normals` add arrays of these. `progress` is called with the numbers of
     /// finished rows and of all rows.
     #[pyo3(signature = (
-        *, samples=None, width=None, height=None, method=None, depth=false, objects=false, normals=false, threads=None,
-        progress=None
+        *, samples=None, width=None, height=None, method=None, alpha=None, depth=false, objects=false, normals=false,
+        threads=None, progress=None
     ))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn render(
@@ -214,6 +214,7 @@ impl Scene {
         width: Option<usize>,
         height: Option<usize>,
         method: Option<&str>,
+        alpha: Option<bool>,
         depth: bool,
         objects: bool,
         normals: bool,
@@ -227,7 +228,7 @@ impl Scene {
                 Sampler::MAX_SAMPLES
             )));
         }
-        let wanted = Wanted { size: self.size(width, height)?, samples, depth, objects, normals };
+        let wanted = Wanted { size: self.size(width, height)?, samples, alpha, depth, objects, normals };
         let model = match method {
             None => self.model.clone(),
             Some(name) => self.with(py, accuracy(name)?)?,
@@ -355,7 +356,8 @@ impl Scene {
         }
         let [width, _] = self.model.camera.value.pixels;
         let size = self.size((width > SHOWN).then_some(SHOWN), None)?;
-        let wanted = Wanted { size, samples: None, depth: false, objects: false, normals: false };
+        let wanted =
+            Wanted { size, samples: None, alpha: None, depth: false, objects: false, normals: false };
         image::render(py, &self.model, &wanted, &How::PLAIN)?._repr_png_(py).map(Some)
     }
 

@@ -43,6 +43,20 @@ pub(crate) fn to_bytes(cpu: Cpu, display: &Display, colours: View, pixels: &mut 
     }
 }
 
+/// Converts premultiplied colours to the bytes that show them where they are opaque, and their alpha to bytes. What is
+/// transparent is black.
+pub(crate) fn to_bytes_with_alpha(
+    display: &Display,
+    (colours, alpha): (View, &[f64]),
+    pixels: &mut [[u8; 3]],
+    bytes: &mut [u8],
+) {
+    for (index, ((byte, pixel), alpha)) in bytes.iter_mut().zip(pixels).zip(alpha).enumerate() {
+        let [red, green, blue, last] = display.bytes_with_alpha(colours.get(index), *alpha);
+        (*pixel, *byte) = ([red, green, blue], last);
+    }
+}
+
 /// The number of colours that are compared at once.
 const RUN: usize = 16;
 

@@ -20,6 +20,13 @@ const RUN: usize = 16;
 pub const DARK: u8 = 8;
 
 impl Levels {
+    /// Adds pixels: red, green, blue and alpha of each. What is transparent is black.
+    pub fn add_with_alpha(&mut self, bytes: &[u8]) {
+        let (pixels, _) = bytes.as_chunks::<4>();
+        let colours = pixels.iter().map(|[red, green, blue, _]| [*red, *green, *blue]);
+        self.add(colours.collect::<Vec<_>>().as_flattened());
+    }
+
     /// Adds pixels: red, green and blue of each.
     pub fn add(&mut self, bytes: &[u8]) {
         for bytes in bytes.chunks(3 * RUN) {
@@ -45,7 +52,7 @@ mod tests {
     fn white_is_full_in_all_channels() {
         let mut levels = Levels::default();
         levels.add(&[255, 255, 255, 255, 255, 254, 0, 0, 0]);
-        levels.add(&[255; 6]);
+        levels.add_with_alpha(&[255; 8]);
         assert_eq!(levels, Levels { brightest: 255, white: 3, dark: 0, pixels: 5 });
         let mut dark = Levels::default();
         dark.add(&[7, 0, 3]);

@@ -32,8 +32,9 @@ const MANY: usize = 1 << 14;
 pub struct Plan<'m> {
     /// The scene.
     pub model: &'m Model,
-    /// The camera, initially the model's own. Three things may be changed afterwards: a fixed number of samples, the
-    /// sampler, and, in a plan for any ray, the size of the image. The plan depends on everything else.
+    /// The camera, initially the model's own, but with alpha switched off: few images have a place for it. Four things may
+    /// be changed afterwards: a fixed number of samples, the sampler, alpha, and, in a plan for any ray, the size of the
+    /// image. The plan depends on everything else.
     pub camera: Sensor,
     /// The indices of the objects without bounds.
     pub unbounded: Vec<usize>,
@@ -134,7 +135,7 @@ impl<'m> Plan<'m> {
         for ShutOut { light, .. } in &shut_out {
             needs.leave_out(*light, UnlitReason::ShutOut);
         }
-        let camera = model.camera.value.clone();
+        let camera = Sensor { alpha: false, ..model.camera.value.clone() };
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
         let prover = camera.certain.then(|| PixelProver::new(model));
         let mut unreached = needs.unreached.iter().peekable();

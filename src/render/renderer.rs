@@ -1,11 +1,11 @@
 //! The tile loop: renders a model's pixels, on the threads of the caller.
 
-use crate::bytes::to_bytes;
+use crate::bytes::{to_bytes, to_bytes_with_alpha};
 use crate::flaws::Flaws;
 use crate::observer::TraceObserver;
 use crate::plan::Plan;
 use crate::ray_stats::RayStats;
-use crate::tiles::{self, BAND, Band, TILE, locked};
+use crate::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::trace::{Scratch, Tracer};
 use rayon::ThreadPool;
 use std::ops::{ControlFlow, Range};
@@ -80,16 +80,17 @@ impl Renderer {
         watched: &'r (dyn Fn(W) + Sync),
     ) -> impl Iterator<Item = Band> + 'r {
         Band::split(&columns, &rows, BAND).map(move |rows| {
-            let band = Band::blank(columns.clone(), rows);
+            let band = Band::blank(columns.clone(), rows, plan.camera.alpha);
             self.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, watched);
             band
         })
     }
 
-    /// Renders the whole image: red, green and blue of each pixel, in rows from the top, each from the left.
+    /// Renders the whole image: red, green and blue of each pixel, with alpha if the plan's camera has that, in rows from
+    /// the top, each from the left.
     pub fn picture(&self, plan: &Plan) -> Vec<u8> {
         let [width, height] = plan.camera.pixels;
-        let band = Band::blank(0..width, 0..height);
+        let band = Band::blank(0..width, 0..height, plan.camera.alpha);
         self.fill(plan, &band, RenderCallbacks { stops: &|| false, row: &|| () }, &|_: Flaws| {});
         band.bytes(usize::MAX).concat()
     }
@@ -125,16 +126,26 @@ impl Renderer {
             let strip = &band.strips[index];
             let is_done = locked(strip).tiles.clone();
             let open = (0..is_done.len()).filter(|tile| !is_done[*tile]).collect();
-            let mut bytes = [[0; 3]; TILE * TILE];
-            let mut add = |tile: usize, pixels: &[[usize; 2]], colours: View| {
-                to_bytes(self.cpu, &display, colours, &mut bytes[..pixels.len()]);
-                let (mut strip, mut rest) = (locked(strip), &bytes[..]);
+            let (mut bytes, mut alphas) = ([[0; 3]; TILE * TILE], [0; TILE * TILE]);
+            let mut add = |tile: usize, pixels: &[[usize; 2]], colours: View, alpha: &[f64]| {
+                let (bytes, alphas) = (&mut bytes[..pixels.len()], &mut alphas[..pixels.len()]);
+                match band.has_alpha {
+                    true => to_bytes_with_alpha(&display, (colours, alpha), bytes, alphas),
+                    false => to_bytes(self.cpu, &display, colours, bytes),
+                }
+                let (mut strip, mut rest, mut rest_of_alpha) = (locked(strip), &bytes[..], &alphas[..]);
                 let from = left + TILE * tile;
                 let columns = from..band.columns.end.min(from + TILE);
-                let pixels = &mut strip.pixels[..];
+                let Strip { pixels, alpha, .. } = &mut *strip;
                 tiles::for_each_run(columns, height - rows.end..height - top, |run, y| {
                     let (bytes, others) = rest.split_at(run.len());
-                    let row = &mut pixels[(height - 1 - y - top) * width + run.start - left..];
+                    let at = (height - 1 - y - top) * width + run.start - left;
+                    if band.has_alpha {
+                        let (alphas, others) = rest_of_alpha.split_at(run.len());
+                        alpha[at..at + run.len()].copy_from_slice(alphas);
+                        rest_of_alpha = others;
+                    }
+                    let row = &mut pixels[at..];
                     match (row.first_chunk_mut::<{ tiles::SIDE }>(), bytes.first_chunk()) {
                         (Some(row), Some(bytes)) => *row = *bytes,
                         _ => row[..run.len()].copy_from_slice(bytes),
@@ -151,7 +162,8 @@ impl Renderer {
     }
 
     /// Renders a part of the image without clamping or rounding its light. Returns the values that `of` makes from
-    /// the light of each pixel, in rows from the top, each from the left, or `None` if the overseer stops it.
+    /// the light and the alpha of each pixel, in rows from the top, each from the left, or `None` if the overseer stops it.
+    /// Light is premultiplied; where the plan's camera has no alpha, it is 1.
     /// Observers are passed to `watched` as in [`bands`](Self::bands).
     pub fn light<W: ImageObserver, T: Clone + Default + Send>(
         &self,
@@ -159,7 +171,7 @@ impl Renderer {
         [columns, rows]: [&Range<usize>; 2],
         overseer: RenderCallbacks,
         watched: &(dyn Fn(W) + Sync),
-        of: &(dyn Fn(Rgb) -> T + Sync),
+        of: &(dyn Fn(Rgb, f64) -> T + Sync),
     ) -> Option<Vec<T>> {
         let [_, height] = plan.camera.pixels;
         let (left, width) = (columns.start, columns.len());
@@ -167,9 +179,10 @@ impl Renderer {
         let strip = |index: usize, strip: &mut [T]| {
             let top = rows.start + TILE * index;
             let rows = top..top + strip.len() / width;
-            let mut add = |_: usize, pixels: &[[usize; 2]], colours: View| {
+            let mut add = |_: usize, pixels: &[[usize; 2]], colours: View, alpha: &[f64]| {
                 for (index, [x, y]) in pixels.iter().enumerate() {
-                    strip[(height - 1 - y - top) * width + x - left] = of(colours.get(index));
+                    let alpha = alpha.get(index).copied().unwrap_or(1.0);
+                    strip[(height - 1 - y - top) * width + x - left] = of(colours.get(index), alpha);
                 }
             };
             let indices = (0..width.div_ceil(TILE)).collect();
@@ -185,7 +198,7 @@ impl Renderer {
     }
 
     /// Renders a part of the image as [`light`](Self::light) does, with the values of files of full range: red, green
-    /// and blue of each pixel.
+    /// and blue of each pixel, premultiplied and with alpha if the plan's camera has that.
     pub fn colours<W: ImageObserver>(
         &self,
         plan: &Plan,
@@ -194,8 +207,13 @@ impl Renderer {
         watched: &(dyn Fn(W) + Sync),
     ) -> Option<Vec<f32>> {
         let display = plan.camera.display();
-        let of = |light: Rgb| display.full_range(light).as_vec3().to_array();
-        self.light(plan, part, overseer, watched, &of).map(Vec::into_flattened)
+        let of = |light: Rgb, _: f64| display.full_range(light).as_vec3().to_array();
+        let with_alpha =
+            |light: Rgb, alpha: f64| display.full_range(light).as_vec3().extend(alpha as f32).to_array();
+        match plan.camera.alpha {
+            true => self.light(plan, part, overseer, watched, &with_alpha).map(Vec::into_flattened),
+            false => self.light(plan, part, overseer, watched, &of).map(Vec::into_flattened),
+        }
     }
 
     /// Computes a value for each pixel, in rows counted from the top, each from the left. Returns `None` if `done`,
@@ -246,8 +264,8 @@ pub struct StripTiles<'s> {
 }
 
 /// Takes the colours of a tile: its index in the strip, its pixels by column and row from the bottom, and a colour for
-/// each.
-type TileSink<'s> = dyn FnMut(usize, &[[usize; 2]], View) + 's;
+/// each, with alpha if there is any.
+type TileSink<'s> = dyn FnMut(usize, &[[usize; 2]], View, &[f64]) + 's;
 
 /// An observer with which images are rendered. The code that traces rays for it is compiled in this crate, and not
 /// again in each crate that renders.
@@ -289,9 +307,10 @@ fn trace<W: TraceObserver + Default>(
             pixels.len()
         };
         let ends: Vec<usize> = together.iter().map(end).collect();
-        let (colours, mut start) = (tracer.pixels(&pixels), 0);
+        let ((colours, alpha), mut start) = (tracer.pixels_with_alpha(&pixels), 0);
         for (index, end) in together.iter().zip(ends) {
-            sink(*index, &pixels[start..end], colours.part(start..end));
+            let alpha = if alpha.is_empty() { alpha } else { &alpha[start..end] };
+            sink(*index, &pixels[start..end], colours.part(start..end), alpha);
             start = end;
         }
     }

@@ -47,8 +47,24 @@ pub const BAND: usize = 1 << 22;
 pub struct Strip {
     /// Red, green and blue of each pixel, in rows from the top, each from the left; black where nothing is rendered.
     pub pixels: Vec<[u8; 3]>,
+    /// The alpha of each pixel; empty where the image has none.
+    pub alpha: Vec<u8>,
     /// Whether each tile is rendered, from the left.
     pub tiles: Vec<bool>,
+}
+
+impl Strip {
+    /// Takes the bytes of the pixels: three or, with alpha, four of each.
+    fn take_bytes(&mut self) -> Vec<u8> {
+        let (pixels, alpha) = (take(&mut self.pixels), take(&mut self.alpha));
+        if alpha.is_empty() { pixels.into_flattened() } else { with_alpha(&pixels, &alpha) }
+    }
+}
+
+/// Joins the colours of pixels and their alpha.
+pub fn with_alpha(pixels: &[[u8; 3]], alpha: &[u8]) -> Vec<u8> {
+    let joined = pixels.iter().zip(alpha).map(|([red, green, blue], alpha)| [*red, *green, *blue, *alpha]);
+    joined.collect::<Vec<_>>().into_flattened()
 }
 
 /// Some rows of an image, or of a part of one.
@@ -59,18 +75,26 @@ pub struct Band {
     pub rows: Range<usize>,
     /// The rows of tiles, from the top. A rendering thread locks a row only while it adds a tile.
     pub strips: Arc<[Mutex<Strip>]>,
+    /// Whether the pixels have alpha.
+    pub has_alpha: bool,
 }
 
 impl Band {
-    /// Makes a band without rendered pixels.
-    pub fn blank(columns: Range<usize>, rows: Range<usize>) -> Self {
+    /// Makes a band without rendered pixels. With alpha, they are transparent.
+    pub fn blank(columns: Range<usize>, rows: Range<usize>, has_alpha: bool) -> Self {
         let width = columns.len();
         let strip = |from: usize| {
             let pixels = vec![[0; 3]; width * TILE.min(rows.end - from)];
-            Mutex::new(Strip { pixels, tiles: vec![false; width.div_ceil(TILE)] })
+            let alpha = vec![0; if has_alpha { pixels.len() } else { 0 }];
+            Mutex::new(Strip { pixels, alpha, tiles: vec![false; width.div_ceil(TILE)] })
         };
         let strips = rows.clone().step_by(TILE).map(strip).collect();
-        Self { columns, rows, strips }
+        Self { columns, rows, strips, has_alpha }
+    }
+
+    /// Returns the number of bytes of a pixel.
+    pub fn pixel(&self) -> usize {
+        if self.has_alpha { 4 } else { 3 }
     }
 
     /// Locks a row of tiles, by its index from the top.
@@ -86,23 +110,24 @@ impl Band {
     /// Copies the rendered tiles of the band. Threads that are still at work on the band add nothing to the copy.
     pub fn copied(&self) -> Self {
         let copy = |strip: &Mutex<Strip>| {
-            let Strip { pixels, tiles } = &*locked(strip);
-            Mutex::new(Strip { pixels: pixels.clone(), tiles: tiles.clone() })
+            let Strip { pixels, alpha, tiles } = &*locked(strip);
+            Mutex::new(Strip { pixels: pixels.clone(), alpha: alpha.clone(), tiles: tiles.clone() })
         };
-        let (columns, rows) = (self.columns.clone(), self.rows.clone());
-        Self { columns, rows, strips: self.strips.iter().map(copy).collect() }
+        let (columns, rows, has_alpha) = (self.columns.clone(), self.rows.clone(), self.has_alpha);
+        Self { columns, rows, strips: self.strips.iter().map(copy).collect(), has_alpha }
     }
 
     /// Takes the bytes of the pixels, in rows from the top: in one piece if they are at most `at_once`, or else in
     /// one piece for each row of tiles.
     pub fn bytes(&self, at_once: usize) -> Vec<Vec<u8>> {
-        let taken = self.strips.iter().map(|strip| take(&mut locked(strip).pixels));
-        if 3 * self.columns.len() * self.rows.len() <= at_once {
-            let mut all = Vec::with_capacity(3 * self.columns.len() * self.rows.len());
-            taken.for_each(|pixels| all.extend_from_slice(pixels.as_flattened()));
+        let taken = self.strips.iter().map(|strip| locked(strip).take_bytes());
+        let len = self.pixel() * self.columns.len() * self.rows.len();
+        if len <= at_once {
+            let mut all = Vec::with_capacity(len);
+            taken.for_each(|bytes| all.extend_from_slice(&bytes));
             vec![all]
         } else {
-            taken.map(Vec::into_flattened).collect()
+            taken.collect()
         }
     }
 

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::env;
 use std::fs::File;
 use std::io::{self, Read};
-use std::ops::Range;
+use std::ops::{Not, Range};
 use std::path::Path;
 use tabray_core::parallel;
 use tabray_core::scene::choice::Choice;
@@ -41,6 +41,9 @@ pub struct Identity {
     /// The maximum number of samples per pixel, and the reason for more samples, if pixels differ in their numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     more_samples: Option<String>,
+    /// Whether the image is transparent where it shows no object.
+    #[serde(skip_serializing_if = "Not::not")]
+    alpha: bool,
     /// The hash of the hashes of the parts of the scene's dump.
     scene: String,
     /// The width and the height of the image in pixels.
@@ -80,6 +83,7 @@ impl Identity {
                 Some(error) => format!("up to {most} for an error of {} levels", 255.0 * error),
                 None => format!("up to {most}"),
             }),
+            alpha: camera.alpha,
             scene: scene(model),
             size: camera.pixels,
             textures: textures.collect(),
@@ -120,7 +124,9 @@ impl Identity {
             let stops = of.exposure.unwrap_or(0.0);
             format!("{stops} {}", if stops.abs() == 1.0 { "stop" } else { "stops" })
         };
+        let transparent = |of: &Self| if of.alpha { "transparent" } else { "opaque" }.to_owned();
         let values = [
+            ("background", transparent(old), transparent(self)),
             ("size", size(old.size), size(self.size)),
             ("crop", crop(old.crop), crop(self.crop)),
             ("number of samples", old.samples.to_string(), self.samples.to_string()),

@@ -164,7 +164,7 @@ impl Reader {
         self.left == 0
     }
 
-    /// Fills a band of an image of bytes with the tiles that the file has, and leaves the others. `strip` is the index of
+    /// Fills a band of an image of bytes, with alpha if the file has it, with the tiles that the file has, and leaves the others. `strip` is the index of
     /// its first row of tiles. Bands must be passed in order, from the top.
     ///
     /// # Errors
@@ -173,20 +173,21 @@ impl Reader {
         let (grid, mut bytes) = (self.label.grid(), Vec::new());
         let across = grid.across();
         for index in 0..band.strips.len() {
-            let Strip { pixels, tiles } = &mut *band.strip(index);
+            let Strip { pixels, alpha, tiles } = &mut *band.strip(index);
             for (column, is_done) in tiles.iter_mut().enumerate() {
                 let tile = (strip + index) * across + column;
                 if self.done.has(tile) {
-                    bytes.resize(3 * grid.pixels(tile), 0);
+                    bytes.resize(band.pixel() * grid.pixels(tile), 0);
                     self.read(&mut bytes)?;
-                    let [columns, rows] = grid.tile(tile);
-                    put_tile(
-                        pixels.as_flattened_mut(),
-                        3 * grid.size[0],
-                        [columns, 0..rows.len()],
-                        3,
-                        &bytes,
-                    );
+                    let ([columns, rows], width) = (grid.tile(tile), grid.size[0]);
+                    let place = [columns, 0..rows.len()];
+                    if band.has_alpha {
+                        let (all, _) = bytes.as_chunks::<4>();
+                        let alphas: Vec<u8> = all.iter().map(|pixel| pixel[3]).collect();
+                        put_tile(alpha, width, place.clone(), 1, &alphas);
+                        bytes = all.iter().flat_map(|pixel| pixel[..3].to_vec()).collect();
+                    }
+                    put_tile(pixels.as_flattened_mut(), 3 * width, place, 3, &bytes);
                     *is_done = true;
                 }
             }
@@ -279,7 +280,7 @@ mod tests {
     /// Returns all bytes of an image, as a file with these bytes fills them, and which tiles are done.
     fn filled(bytes: &[u8]) -> io::Result<(Vec<u8>, Vec<bool>)> {
         let mut reader = Reader::open(file(bytes))?;
-        let band = Band::blank(0..SIZE[0], 0..SIZE[1]);
+        let band = Band::blank(0..SIZE[0], 0..SIZE[1], false);
         reader.fill(&band, 0)?;
         let tiles = (0..band.strips.len()).flat_map(|index| band.strip(index).tiles.clone()).collect();
         Ok((band.bytes(usize::MAX).concat(), tiles))

@@ -4,7 +4,7 @@ use crate::painting::{Painting, Whole};
 use std::borrow::Cow;
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::full_range::FullRange;
-use tabray_core::output::picture::Format;
+use tabray_core::output::picture::{About, Format};
 use tabray_core::scene::model::Model;
 use tabray_core::text::{list, short};
 use tabray_rays::surface_mesh::{self, Body, NoBody, NoMesh, mesh};
@@ -32,7 +32,7 @@ pub fn png(painting: &Painting) -> Result<Vec<u8>, String> {
 pub fn exr(painting: &Painting) -> Result<Vec<u8>, String> {
     let Whole { size, colours, .. } = painting.whole()?;
     let mut out = Vec::new();
-    let written = FullRange::Exr.write(&mut out, size, colours, None);
+    let written = FullRange::Exr.write(&mut out, size, colours, &About::default());
     written.map_err(|error| error.to_string()).map(|()| out)
 }
 

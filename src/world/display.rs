@@ -172,6 +172,10 @@ fn srgb_byte(light: f64) -> u8 {
 }
 
 impl Display {
+    /// Shows numbers from 0 to 1 as they are, as for alpha.
+    pub const LINEAR: Self =
+        Self { rules: Rules::Notes, gain: 1.0, tone: Tone::Clip, transfer: Transfer::Linear };
+
     /// Returns the rules of light by which the image is computed.
     pub fn rules(&self) -> Rules {
         self.rules
@@ -291,6 +295,14 @@ impl Display {
             Rules::Notes => (self.gain * light).to_array().map(|channel| (255.0 * channel) as u8),
             Rules::Free => self.toned(light).to_array().map(|channel| self.byte(channel)),
         }
+    }
+
+    /// Returns the bytes that show premultiplied light where it is opaque, and the byte of its alpha. What is transparent
+    /// is black.
+    pub fn bytes_with_alpha(&self, light: Rgb, alpha: f64) -> [u8; 4] {
+        let byte = (255.0 * alpha).round() as u8;
+        let [red, green, blue] = if byte == 0 { [0; 3] } else { self.bytes(light / alpha) };
+        [red, green, blue, byte]
     }
 
     /// Returns the light that a byte of a texture stands for, from 0 to 1. The image shows this light with the same

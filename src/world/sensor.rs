@@ -50,6 +50,8 @@ pub struct Sensor {
     /// The number of surfaces by which light may go on to a matt one, besides those that reflect or transmit it: 0 where
     /// matt surfaces do not light each other.
     pub bounces: u32,
+    /// Whether image files are transparent where they show no object.
+    pub alpha: bool,
 }
 
 /// The sensor of the notes' camera, without pixels.
@@ -87,6 +89,7 @@ impl Sensor {
             accuracy: Accuracy::default(),
             rules: Rules::default(),
             bounces: 0,
+            alpha: false,
         }
     }
 

@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod alpha;
 mod bench;
 mod cameras;
 mod certain;

@@ -26,6 +26,8 @@ pub struct Provenance {
     pub texts: Vec<(&'static str, String)>,
     /// The number of pixels per inch with which the image is to be printed.
     pub dpi: Option<u32>,
+    /// Whether the pixels have alpha.
+    pub alpha: bool,
 }
 
 impl Provenance {
@@ -43,29 +45,29 @@ impl Provenance {
             ("tabray scene", source.hash()),
             ("tabray options", options(camera, region) + &printed + &set.words()),
         ];
-        Self { texts, dpi }
+        Self { texts, dpi, alpha: camera.0.alpha }
     }
 
     /// Returns what the format has a place for.
     pub fn about(&self) -> About<'_> {
-        About { texts: &self.texts, dpi: self.dpi }
+        About { texts: &self.texts, dpi: self.dpi, alpha: self.alpha }
     }
 }
 
-/// Tells whether a complete image exists: a PNG that has these texts, and is newer than the program and than the files
+/// Tells whether a complete image exists: a PNG that says this, and is newer than the program and than the files
 /// that its scene names. The texts do not contain the content of these files.
-pub fn is_up_to_date(path: &Path, texts: &[(&str, String)], named: &[PathBuf]) -> bool {
+pub fn is_up_to_date(path: &Path, made: &Provenance, named: &[PathBuf]) -> bool {
     let changed = |path: &Path| fs::metadata(path).and_then(|meta| meta.modified()).ok();
-    let made = changed(path);
+    let written = changed(path);
     // What has no time is not known to be older.
-    let is_older = |file: &Path| changed(file).zip(made).is_some_and(|(file, made)| file < made);
+    let is_older = |file: &Path| changed(file).zip(written).is_some_and(|(file, written)| file < written);
     let is_newer =
         env::current_exe().is_ok_and(|program| is_older(&program)) && named.iter().all(|file| is_older(file));
-    is_newer && matches!(is_whole(path, texts), Ok(true))
+    is_newer && matches!(is_whole(path, made), Ok(true))
 }
 
-/// Tells whether a file is an undamaged PNG with these texts, that no pixel is missing of.
-fn is_whole(path: &Path, texts: &[(&str, String)]) -> io::Result<bool> {
+/// Tells whether a file is an undamaged PNG that says this, and that no pixel is missing of.
+fn is_whole(path: &Path, made: &Provenance) -> io::Result<bool> {
     let mut png = png::Decoder::new(BufReader::with_capacity(1 << 16, files::open(path)?));
     png.ignore_checksums(false);
     let mut png = png.read_info()?;
@@ -76,8 +78,9 @@ fn is_whole(path: &Path, texts: &[(&str, String)]) -> io::Result<bool> {
         let mut others = info.utf8_text.iter().filter(|of| of.keyword == *keyword && !of.compressed);
         plain || others.any(|of| of.get_text().is_ok_and(|of| of == *text))
     };
-    // What a stopped render leaves is transparent where pixels are missing.
-    if info.color_type != png::ColorType::Rgb || !texts.iter().all(has) {
+    // What a stopped render leaves is transparent where pixels are missing, and has no texts.
+    let colours = if made.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb };
+    if info.color_type != colours || !made.texts.iter().all(has) {
         return Ok(false);
     }
     while png.next_row()?.is_some() {}
@@ -105,6 +108,9 @@ fn options((camera, exposure): (&Sensor, f64), region: &Region) -> String {
     }
     if camera.samples > 1 || camera.adaptive.is_some() {
         words += &format!(" --sampler {}", camera.sampler.name());
+    }
+    if camera.alpha {
+        words += " --alpha";
     }
     if exposure != 0.0 {
         words += &format!(" --exposure {}", text::shortest(exposure));

@@ -3,7 +3,7 @@
 use super::Args;
 use crate::course::Differences;
 use crate::files::input::{self, Source};
-use crate::files::output::{Output, format_of};
+use crate::files::output::Output;
 use crate::files::provenance::{self, Provenance};
 use crate::options::size::Region;
 use crate::options::stop::Stop;
@@ -37,13 +37,8 @@ pub(super) fn render(
     (scene, path): (&Path, PathBuf),
     stop: &Stop,
 ) -> Result<(), Failure> {
-    let full_range = args.full_range(&path);
-    let format = if full_range.is_some() {
-        Format::Png(args.compress)
-    } else {
-        format_of(args.format, &path, args.compress)?
-    };
-    let dpi = args.print.dpi(&path, format, full_range)?;
+    let (format, full_range) = args.format_of(&path)?;
+    let dpi = args.print.dpi(&path, (format, full_range))?;
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
@@ -55,6 +50,8 @@ pub(super) fn render(
     let camera = &mut model.camera.value;
     args.samples.apply(camera)?;
     camera.exposure += args.exposure;
+    args.print.apply_alpha(&path, (format, full_range), &mut model.camera)?;
+    let camera = &mut model.camera.value;
     let region = args.size.apply(camera)?;
     args.samples.raise(&mut model, args.threads, cpu)?;
     let camera = (&model.camera.value, args.exposure);
@@ -79,9 +76,7 @@ pub(super) fn render(
     if let Some(number) = args.part.part {
         return image.part(number, stats);
     }
-    if args.skips(&path, &image.model)?
-        && provenance::is_up_to_date(&path, &image.made.texts, warnings.files())
-    {
+    if args.skips(&path, &image.model)? && provenance::is_up_to_date(&path, &image.made, warnings.files()) {
         messages::note(&format!("{} exists already", text::shown(path)));
         return Ok(());
     }
@@ -126,7 +121,8 @@ impl ImageRender<'_> {
         })?;
         debug::print(&model, &args.debug)?;
         let start = Instant::now();
-        let plan = args.keep.plan(&model);
+        let mut plan = args.keep.plan(&model);
+        plan.camera.alpha = model.camera.value.alpha;
         stats.building += start.elapsed();
         let renderer = args.threads.renderer_for(region.rows.len())?.on(self.cpu);
         let [width, height] = region.size();
@@ -177,7 +173,8 @@ impl ImageRender<'_> {
         debug::print(model, &args.debug)?;
         let beside = aov::requested(&args.aov, model)?;
         let start = Instant::now();
-        let plan = args.keep.plan(model);
+        let mut plan = args.keep.plan(model);
+        plan.camera.alpha = model.camera.value.alpha;
         stats.building += start.elapsed();
         let renderer = args.threads.renderer()?.on(self.cpu);
         let tiles = TileRender {

@@ -21,11 +21,11 @@ use tabray_core::render::flaws::Flaws;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::RayStats;
 use tabray_core::render::renderer::{ImageObserver, RenderCallbacks, Renderer};
-use tabray_core::render::tiles::{Band, TILE};
+use tabray_core::render::tiles::{Band, TILE, with_alpha};
 use tabray_tools::pixels::take_tile;
 
-/// The memory for a pixel of full range, in bytes: its colour and its encoding.
-pub const PIXEL: usize = 12 * 4;
+/// The memory for a pixel of full range, in bytes: its colour, with alpha, and its encoding.
+pub const PIXEL: usize = 16 * 4;
 
 /// The time between two questions whether rendering is to stop, while no tile is finished that would ask.
 const ASK: Duration = Duration::from_millis(20);
@@ -71,8 +71,13 @@ impl TileRender<'_> {
     pub fn take(&self, band: &Band, tile: usize, bytes: &mut Vec<u8>) {
         let ([columns, rows], index) = (self.grid().tile(tile), tile / self.grid().across());
         let strip = band.strip(index - self.strip(band));
-        let all = strip.pixels.as_flattened();
-        take_tile(all, 3 * band.columns.len(), [columns, 0..rows.len()], 3, bytes);
+        let (place, width) = ([columns, 0..rows.len()], band.columns.len());
+        take_tile(strip.pixels.as_flattened(), 3 * width, place.clone(), 3, bytes);
+        if band.has_alpha {
+            let mut alpha = Vec::new();
+            take_tile(&strip.alpha, width, place, 1, &mut alpha);
+            *bytes = with_alpha(bytes.as_chunks().0, &alpha);
+        }
     }
 
     /// Returns the index of a band's first row of tiles.
@@ -131,8 +136,9 @@ impl TileRender<'_> {
     /// Makes a band in which only those of the tiles are to be rendered that a checkpoint does not have.
     fn begin(&self, rows: Range<usize>, begun: Option<&mut ResumedImage>) -> Result<Band, Failure> {
         let columns = self.region.columns.clone();
-        memory::refuse_too_large(3 * rows.len() * columns.len(), "the image")?;
-        let band = Band::blank(columns, rows);
+        let has_alpha = self.plan.camera.alpha;
+        memory::refuse_too_large(if has_alpha { 4 } else { 3 } * rows.len() * columns.len(), "the image")?;
+        let band = Band::blank(columns, rows, has_alpha);
         let (first, across) = (self.strip(&band), self.grid().across());
         begun.map_or(Ok(()), |begun| begun.fill(&band, first))?;
         for strip in 0..band.strips.len() {
@@ -159,8 +165,12 @@ impl TileRender<'_> {
             return;
         }
         let (done, is_done) = mpsc::channel();
-        let theirs =
-            Band { columns: band.columns.clone(), rows: band.rows.clone(), strips: Arc::clone(&band.strips) };
+        let theirs = Band {
+            columns: band.columns.clone(),
+            rows: band.rows.clone(),
+            strips: Arc::clone(&band.strips),
+            has_alpha: band.has_alpha,
+        };
         let work = move || {
             renderer.fill(plan, &theirs, callbacks, watched);
             let _ = done.send(());

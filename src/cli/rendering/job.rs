@@ -62,6 +62,7 @@ impl Job<'_> {
     ) -> Result<Levels, Failure> {
         let TileRender { region, renderer, at_once, stop, .. } = self.tiles;
         let (grid, rows, wide) = (self.tiles.grid(), &region.rows, region.columns.len());
+        let channels = self.made.about().channels();
         let (mut done, mut levels) = (TileSet::none(self.tiles.tiles.clone()), Levels::default());
         let (mut next, mut broken, mut is_cut, mut writing) = (rows.start, None, false, None);
         let mut out = BufWriter::with_capacity(1 << 16, output);
@@ -79,11 +80,11 @@ impl Job<'_> {
                 None if (rows.end - next) * wide > MAX_BLANK => {
                     is_cut = true;
                     // One row more, so that the compressor writes the rows before it.
-                    return Some(vec![Ok(vec![0; 3 * wide]), Err(io::ErrorKind::Other.into())]);
+                    return Some(vec![Ok(vec![0; channels * wide]), Err(io::ErrorKind::Other.into())]);
                 }
                 None => {
                     let blank = Band::split(&region.columns, &(next..rows.end), at_once).next()?;
-                    Band::blank(region.columns.clone(), blank)
+                    Band::blank(region.columns.clone(), blank, self.made.alpha)
                 }
             };
             next = band.rows.end;
@@ -91,7 +92,10 @@ impl Job<'_> {
             rendered.for_each(|(tile, _)| done.add(tile));
             writing = Some(Instant::now());
             let bytes = band.bytes(PIECE);
-            bytes.iter().for_each(|bytes| levels.add(bytes));
+            bytes.iter().for_each(|bytes| match self.made.alpha {
+                true => levels.add_with_alpha(bytes),
+                false => levels.add(bytes),
+            });
             Some(bytes.into_iter().map(Ok).collect())
         });
         // Pieces that are compressed together are in memory together.
@@ -150,7 +154,9 @@ impl Job<'_> {
             Ok(())
         })?;
         flaws::tell_of_far(self.tiles.stats.tally.flaws().far);
-        write_image(self.path, output, |out| format.write(out, self.tiles.region.size(), &all, self.made.dpi))
+        write_image(self.path, output, |out| {
+            format.write(out, self.tiles.region.size(), &all, &self.made.about())
+        })
     }
 }
 

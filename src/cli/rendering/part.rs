@@ -100,7 +100,7 @@ impl PartRender<'_> {
         let (part, tiles, others) = (self.part, [tiles.start, tiles.end], self.beside.to_vec());
         let label = Label { part, tiles, beside: others, ..whole };
         let main = match self.full_range {
-            Some(format) => Label { what: PixelFormat::full_range(format), ..label.clone() },
+            Some(format) => Label { what: PixelFormat::full_range(format, self.made.alpha), ..label.clone() },
             None => label.clone(),
         };
         let main = beside_and_label(path, main);
@@ -197,13 +197,14 @@ impl PartRender<'_> {
     /// Renders colours of full range. Nothing is kept of a part that is stopped.
     fn full_range(&self, (path, label): &(PathBuf, Label)) -> Result<(), Failure> {
         let (mut writer, grid, mut tile) = (begin(path, label)?, label.grid(), Vec::new());
+        let pixel = label.what.pixel();
         self.tiles.colours(UNKEPT, |run, [wide, tall], colours| {
             let bytes: Vec<u8> = colours.iter().flat_map(|number| number.to_le_bytes()).collect();
             for index in run {
                 let [of, at] = grid.tile(index);
                 let (of, at) =
                     (of.start - wide.start..of.end - wide.start, at.start - tall.start..at.end - tall.start);
-                take_tile(&bytes, 12 * wide.len(), [of, at], 12, &mut tile);
+                take_tile(&bytes, pixel * wide.len(), [of, at], pixel, &mut tile);
                 writer.tile(Some(&tile)).map_err(|error| Failure::cannot_write(path, &error))?;
             }
             Ok(())

@@ -145,7 +145,8 @@ pub fn leave(
     let (path, grid) = (beside(picture), Grid { size: [label.size[0], rows] });
     let cannot_keep = |error: io::Error| Failure::cannot_write(&path, &error);
     let cannot_write = |error: io::Error| Failure::cannot_write(picture, &error);
-    let strips = || written.read().and_then(|file| format.read(file)).map(|shown| strips(shown, grid));
+    let pixel = label.what.pixel();
+    let strips = || written.read().and_then(|file| format.read(file)).map(|shown| strips(shown, grid, pixel));
     let mut checkpoint = Output::open(&path)?;
     let kept = strips().and_then(|strips| keep(&mut checkpoint, label, done, strips));
     kept.map_err(cannot_keep)?;
@@ -158,7 +159,7 @@ pub fn leave(
         }
         Format::Png(_) => {
             let mut partial = Output::open(picture)?;
-            let shown = strips().and_then(|strips| show(&mut partial, grid, done, strips));
+            let shown = strips().and_then(|strips| show(&mut partial, grid, (done, pixel), strips));
             shown.map_err(cannot_write)?;
             partial
         }
@@ -168,12 +169,12 @@ pub fn leave(
     Ok(path)
 }
 
-/// Reads the rows of tiles of an image, from the top.
-fn strips(mut shown: Rows, grid: Grid) -> impl Iterator<Item = io::Result<Vec<u8>>> {
+/// Reads the rows of tiles of an image, from the top. A pixel has as many bytes.
+fn strips(mut shown: Rows, grid: Grid, pixel: usize) -> impl Iterator<Item = io::Result<Vec<u8>>> {
     let [width, height] = grid.size;
     (0..height).step_by(TILE).map(move |row| {
-        let mut bytes = vec![0; 3 * width * TILE.min(height - row)];
-        bytes.chunks_mut(3 * width).try_for_each(|row| shown.next(row))?;
+        let mut bytes = vec![0; pixel * width * TILE.min(height - row)];
+        bytes.chunks_mut(pixel * width).try_for_each(|row| shown.next(row))?;
         Ok(bytes)
     })
 }
@@ -185,24 +186,24 @@ fn keep(
     done: &TileSet,
     strips: impl Iterator<Item = io::Result<Vec<u8>>>,
 ) -> io::Result<()> {
-    let (grid, mut tile) = (label.grid(), Vec::new());
+    let (grid, pixel, mut tile) = (label.grid(), label.what.pixel(), Vec::new());
     let mut writer = Writer::new(BufWriter::with_capacity(1 << 16, out), label)?;
     for (strip, bytes) in strips.enumerate() {
         let bytes = bytes?;
         for index in grid.across() * strip..grid.across() * (strip + 1) {
             let [columns, rows] = grid.tile(index);
-            take_tile(&bytes, 3 * grid.size[0], [columns, 0..rows.len()], 3, &mut tile);
+            take_tile(&bytes, pixel * grid.size[0], [columns, 0..rows.len()], pixel, &mut tile);
             writer.tile(done.has(index).then_some(&tile))?;
         }
     }
     writer.finish()?.flush()
 }
 
-/// Writes an unfinished image as a PNG that is transparent where nothing is rendered.
+/// Writes an unfinished image as a PNG that is transparent where nothing is rendered. A pixel has as many bytes.
 fn show(
     out: impl Write,
     grid: Grid,
-    done: &TileSet,
+    (done, pixel): (&TileSet, usize),
     strips: impl Iterator<Item = io::Result<Vec<u8>>>,
 ) -> io::Result<()> {
     let side = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
@@ -217,12 +218,13 @@ fn show(
     let mut stream = writer.stream_writer()?;
     for (strip, bytes) in strips.enumerate() {
         let bytes = bytes?;
-        for row in bytes.as_chunks().0.chunks(width) {
-            let pixel = |(column, [red, green, blue]): (usize, &[u8; 3])| {
+        for row in bytes.chunks(pixel * width) {
+            let shown = |(column, bytes): (usize, &[u8])| {
                 let is_done = done.has(strip * grid.across() + column / TILE);
-                if is_done { [*red, *green, *blue, u8::MAX] } else { [0; 4] }
+                let alpha = bytes.get(3).copied().unwrap_or(u8::MAX);
+                if is_done { [bytes[0], bytes[1], bytes[2], alpha] } else { [0; 4] }
             };
-            let row: Vec<u8> = row.iter().enumerate().flat_map(pixel).collect();
+            let row: Vec<u8> = row.chunks(pixel).enumerate().flat_map(shown).collect();
             stream.write_all(&row)?;
         }
     }
@@ -238,7 +240,7 @@ pub fn share(pixels: usize, of: usize) -> String {
 
 /// Returns the label of an image of bytes: it is part 1 of 1.
 pub fn label(model: &Model, region: &Region, format: Format, made: &Provenance) -> Result<Label, Failure> {
-    let (identity, what) = (identity(model, region)?, PixelFormat::picture(format));
+    let (identity, what) = (identity(model, region)?, PixelFormat::picture(format, made.alpha));
     let (part, size, beside) = ([1, 1], region.size(), Vec::new());
     let (dpi, texts) = (made.dpi, made.texts.iter());
     let made = texts.map(|(keyword, text)| ((*keyword).to_owned(), text.clone())).collect();

@@ -139,7 +139,7 @@ fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
     for rows in Band::split(&(0..width), &(0..height), BAND) {
         let mut band = match room.take() {
             Some(band) if band.rows.len() == rows.len() => band,
-            _ => Band::blank(0..width, rows.clone()),
+            _ => Band::blank(0..width, rows.clone(), false),
         };
         band.rows = rows;
         (0..band.strips.len()).for_each(|index| band.strip(index).tiles.fill(false));

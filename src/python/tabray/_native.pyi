@@ -139,6 +139,7 @@ class Scene:
         width: int | None = None,
         height: int | None = None,
         method: str | None = None,
+        alpha: bool | None = None,
         depth: bool = False,
         objects: bool = False,
         normals: bool = False,

@@ -113,6 +113,7 @@ def camera(
     tone: _Word = None,
     transfer: _Word = None,
     bounces: _Numbers = None,
+    alpha: _Truth = None,
 ) -> Entity: ...
 
 def capsule(
@@ -214,6 +215,7 @@ def fisheye(
     tone: _Word = None,
     transfer: _Word = None,
     bounces: _Numbers = None,
+    alpha: _Truth = None,
 ) -> Entity: ...
 
 def formula(
@@ -345,6 +347,7 @@ def look_at(
     tone: _Word = None,
     transfer: _Word = None,
     bounces: _Numbers = None,
+    alpha: _Truth = None,
 ) -> Entity: ...
 
 def material(
@@ -415,6 +418,7 @@ def orthographic(
     tone: _Word = None,
     transfer: _Word = None,
     bounces: _Numbers = None,
+    alpha: _Truth = None,
 ) -> Entity: ...
 
 def parametric(
@@ -697,6 +701,7 @@ def thin_lens(
     tone: _Word = None,
     transfer: _Word = None,
     bounces: _Numbers = None,
+    alpha: _Truth = None,
 ) -> Entity: ...
 
 def tiled_plane(

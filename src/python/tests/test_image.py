@@ -77,6 +77,22 @@ def test_a_file_says_how_densely_it_is_printed(tmp_path):
         image.save(tmp_path / "it.png", dpi=0)
 
 
+def test_what_shows_no_object_is_transparent(tmp_path):
+    opaque = tabray.parse(SCENE).render(samples=16)
+    image = tabray.parse(SCENE).render(samples=16, alpha=True)
+    assert image.array.shape == (12, 16, 4) and opaque.array.shape == (12, 16, 3)
+    light, alpha = image.array[..., :3], image.array[..., 3:]
+    assert alpha.min() == 0 and alpha.max() == 1 and ((0 < alpha) & (alpha < 1)).any()
+    # The scene has no background: it is black.
+    assert np.allclose(light, opaque.array, atol=1e-3) and not light[alpha[..., 0] == 0].any()
+    image.save(tmp_path / "it.png")
+    assert (tmp_path / "it.png").read_bytes()[25] == 6, "RGBA"
+    image.save(tmp_path / "it.exr")
+    for name in ["it.ppm", "it.pfm"]:
+        with pytest.raises(ValueError, match="cannot be transparent: end it in .png or .exr"):
+            image.save(tmp_path / name)
+
+
 def test_depth_objects_and_normals_are_those_of_the_rays():
     scene = tabray.parse(SCENE)
     image = scene.render(depth=True, objects=True, normals=True)

@@ -43,7 +43,7 @@ const STRIPE: usize = 1 << 14;
 /// The length of a block of bytes that are stored as they are, as in `flate2`.
 const STORED: usize = 31745;
 
-/// Some rows of a PNG, with 3 bytes for each pixel.
+/// Some rows of a PNG.
 pub(super) struct Piece {
     /// The row above, from which the first row is predicted; empty at the top of the image.
     pub above: Vec<u8>,
@@ -51,6 +51,8 @@ pub(super) struct Piece {
     pub rows: Vec<u8>,
     /// The length of a row in bytes.
     pub row: usize,
+    /// The length of a pixel in bytes.
+    pub pixel: usize,
     /// Whether the image ends with these rows.
     pub is_last: bool,
 }
@@ -176,7 +178,7 @@ impl Piece {
         };
         let mut filtered = vec![0; 1 + self.row];
         for row in self.rows[rows.start * self.row..rows.end * self.row].chunks_exact(self.row) {
-            filter.apply(above, row, &mut filtered);
+            filter.apply(self.pixel, above, row, &mut filtered);
             put(&filtered)?;
             above = row;
         }
@@ -273,7 +275,8 @@ mod tests {
                 let mut writer = encoder.write_header().expect("memory takes it");
                 for height in heights {
                     let (rows, others) = rest.split_at(height * row);
-                    let piece = Piece { above, rows: rows.to_vec(), row, is_last: others.is_empty() };
+                    let piece =
+                        Piece { above, rows: rows.to_vec(), row, pixel: 3, is_last: others.is_empty() };
                     let mut packed = piece.pack(compression, 1).expect("memory takes it");
                     checksum = checksum.and(&packed.checksum);
                     if piece.is_last {
@@ -295,7 +298,7 @@ mod tests {
             let (row, is_last) = (3 * (100 + 31 * seed), seed % 2 == 0);
             let rows = bytes(row * (STRIPE / row + 2) * 9, seed);
             let above = if seed % 3 == 0 { Vec::new() } else { bytes(row, seed + 1) };
-            let piece = Piece { above, rows, row, is_last };
+            let piece = Piece { above, rows, row, pixel: 3, is_last };
             let [one, others @ ..] =
                 [1, 2, 3, 8].map(|stripes| piece.pack(Compression::Fast, stripes).expect("memory takes it"));
             for other in others {
@@ -309,7 +312,8 @@ mod tests {
     fn noise_is_stored() {
         let rows: Vec<u8> =
             (0..3 << 16).map(|byte: u64| (byte.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as u8).collect();
-        let packed = Piece { above: Vec::new(), row: 3 << 8, is_last: true, rows }.pack(Compression::Fast, 1);
+        let packed = Piece { above: Vec::new(), row: 3 << 8, pixel: 3, is_last: true, rows }
+            .pack(Compression::Fast, 1);
         let len = packed.expect("memory takes it").bytes.len();
         assert!(len < (3 << 16) + 400, "{len}");
     }

@@ -2,9 +2,6 @@
 
 use std::iter;
 
-/// The number of bytes of a pixel.
-const PIXEL: usize = 3;
-
 /// The filters of rows.
 #[derive(Clone, Copy)]
 pub(super) enum Filter {
@@ -17,20 +14,29 @@ pub(super) enum Filter {
 }
 
 impl Filter {
-    /// Writes the differences of a row from its prediction, after a byte that names the predictor.
-    pub fn apply(self, above: &[u8], row: &[u8], filtered: &mut [u8]) {
+    /// Writes the differences of a row from its prediction, after a byte that names the predictor. A pixel has three bytes
+    /// or, with alpha, four.
+    pub fn apply(self, pixel: usize, above: &[u8], row: &[u8], filtered: &mut [u8]) {
+        if pixel == 4 {
+            self.apply_to::<4>(above, row, filtered);
+        } else {
+            self.apply_to::<3>(above, row, filtered);
+        }
+    }
+
+    fn apply_to<const PIXEL: usize>(self, above: &[u8], row: &[u8], filtered: &mut [u8]) {
         match self {
             Self::None => {
                 filtered[0] = 0;
                 filtered[1..].copy_from_slice(row);
             }
-            Self::Up => predict(Predictor::Up, above, row, filtered),
+            Self::Up => predict::<PIXEL>(Predictor::Up, above, row, filtered),
             Self::Adaptive => {
                 const ALL: [Predictor; 4] =
                     [Predictor::Up, Predictor::Left, Predictor::Mean, Predictor::Paeth];
                 let mut best = (u64::MAX, Predictor::Up);
                 for predictor in ALL {
-                    predict(predictor, above, row, filtered);
+                    predict::<PIXEL>(predictor, above, row, filtered);
                     let size = filtered[1..].iter().map(|byte| u64::from((*byte as i8).unsigned_abs())).sum();
                     if size <= best.0 {
                         best = (size, predictor);
@@ -40,7 +46,7 @@ impl Filter {
                     }
                 }
                 if filtered[0] != best.1 as u8 {
-                    predict(best.1, above, row, filtered);
+                    predict::<PIXEL>(best.1, above, row, filtered);
                 }
             }
         }
@@ -58,21 +64,28 @@ enum Predictor {
 
 /// Writes the differences of a row from the prediction of a predictor, after the predictor's number. To the left of a
 /// row and above the image everything is 0.
-fn predict(predictor: Predictor, above: &[u8], row: &[u8], filtered: &mut [u8]) {
+fn predict<const PIXEL: usize>(predictor: Predictor, above: &[u8], row: &[u8], filtered: &mut [u8]) {
     let (number, filtered) = filtered.split_at_mut(1);
     number[0] = predictor as u8;
     match predictor {
-        Predictor::Left => each(above, row, filtered, |left, _, _| left),
-        Predictor::Up => each(above, row, filtered, |_, up, _| up),
-        Predictor::Mean => each(above, row, filtered, |left, up, _| (left & up) + ((left ^ up) >> 1)),
-        Predictor::Paeth => each(above, row, filtered, paeth),
+        Predictor::Left => each::<PIXEL>(above, row, filtered, |left, _, _| left),
+        Predictor::Up => each::<PIXEL>(above, row, filtered, |_, up, _| up),
+        Predictor::Mean => {
+            each::<PIXEL>(above, row, filtered, |left, up, _| (left & up) + ((left ^ up) >> 1))
+        }
+        Predictor::Paeth => each::<PIXEL>(above, row, filtered, paeth),
     }
 }
 
 /// Writes the differences of the bytes of a row from their `prediction`, which depends on the bytes to the left, above,
 /// and above to the left.
 #[inline(always)]
-fn each(above: &[u8], row: &[u8], filtered: &mut [u8], prediction: impl Fn(u8, u8, u8) -> u8) {
+fn each<const PIXEL: usize>(
+    above: &[u8],
+    row: &[u8],
+    filtered: &mut [u8],
+    prediction: impl Fn(u8, u8, u8) -> u8,
+) {
     for at in 0..PIXEL.min(row.len()) {
         filtered[at] = row[at].wrapping_sub(prediction(0, above[at], 0));
     }

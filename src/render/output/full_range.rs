@@ -1,5 +1,6 @@
 //! Image files with colours as they are computed: numbers of any size, instead of 256 levels.
 
+use crate::output::picture::About;
 use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
 use image::Rgb32FImage;
 use std::io::{self, BufRead, Cursor, Read, Write};
@@ -27,8 +28,8 @@ impl FullRange {
         }
     }
 
-    /// Writes a whole image: red, green and blue of each pixel, in rows from the top, each from the left. An EXR says
-    /// with how many pixels per inch it is to be printed, if that is given.
+    /// Writes a whole image: red, green and blue of each pixel, in rows from the top, each from the left. An EXR can have
+    /// premultiplied alpha, and says with how many pixels per inch it is to be printed, if that is given.
     ///
     /// # Errors
     /// Returns the errors of `out`, and an error where the format cannot hold the size.
@@ -37,20 +38,31 @@ impl FullRange {
         out: &mut impl Write,
         [width, height]: [usize; 2],
         pixels: &[f32],
-        dpi: Option<u32>,
+        about: &About,
     ) -> io::Result<()> {
         match self {
             Self::Exr => {
-                let mut file = Cursor::new(Vec::new());
-                let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
-                    let pixel = &pixels[3 * (y * width + x)..][..3];
-                    (pixel[0], pixel[1], pixel[2])
-                });
-                let mut image = Image::from_channels((width, height), channels);
-                image.layer_data.attributes.horizontal_density = dpi.map(|dpi| dpi as f32);
-                image.write().to_buffered(&mut file).map_err(io::Error::other)?;
+                let (mut file, density) = (Cursor::new(Vec::new()), about.dpi.map(|dpi| dpi as f32));
+                let written = if about.alpha {
+                    let (pixels, _) = pixels.as_chunks::<4>();
+                    let channels = SpecificChannels::rgba(|Vec2(x, y)| {
+                        <(f32, f32, f32, f32)>::from(pixels[y * width + x])
+                    });
+                    let mut image = Image::from_channels((width, height), channels);
+                    image.layer_data.attributes.horizontal_density = density;
+                    image.write().to_buffered(&mut file)
+                } else {
+                    let (pixels, _) = pixels.as_chunks::<3>();
+                    let channels =
+                        SpecificChannels::rgb(|Vec2(x, y)| <(f32, f32, f32)>::from(pixels[y * width + x]));
+                    let mut image = Image::from_channels((width, height), channels);
+                    image.layer_data.attributes.horizontal_density = density;
+                    image.write().to_buffered(&mut file)
+                };
+                written.map_err(io::Error::other)?;
                 out.write_all(&file.into_inner())
             }
+            Self::Pfm if about.alpha => Err(io::ErrorKind::InvalidInput.into()),
             Self::Pfm => {
                 // A negative scale stands for little-endian numbers.
                 write!(out, "PF\n{width} {height}\n-1.0\n")?;
@@ -111,7 +123,7 @@ mod tests {
     fn a_float_map_is_read_as_it_was_written() {
         let pixels: Vec<f32> = (0..3 * 5 * 2).map(|index| 0.3 * index as f32 - 1.0).collect();
         let mut bytes = Vec::new();
-        FullRange::Pfm.write(&mut bytes, [5, 2], &pixels, None).expect("memory takes it");
+        FullRange::Pfm.write(&mut bytes, [5, 2], &pixels, &About::default()).expect("memory takes it");
         assert_eq!(read_pfm(&bytes[..]).expect("a map").into_raw(), pixels);
         for end in 0..bytes.len() {
             assert!(read_pfm(&bytes[..end]).is_err(), "cut off at {end}");

@@ -2,6 +2,7 @@
 
 use crate::output::full_range::FullRange;
 use crate::output::npy;
+use crate::output::picture::About;
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
     LineOrder, SmallVec, WritableImage,
@@ -52,11 +53,11 @@ impl Numbers {
         let mut array = |descr| npy::begin(descr, &format!("({height}, {width})"), &mut file);
         match (format, self) {
             (NumberFormat::Exr, Self::Triples(numbers)) => {
-                FullRange::Exr.write(&mut file, [width, height], numbers, None)?;
+                FullRange::Exr.write(&mut file, [width, height], numbers, &About::default())?;
             }
             (NumberFormat::Exr, Self::Distances(distances)) => {
                 let numbers: Vec<_> = distances.iter().flat_map(|distance| [*distance as f32; 3]).collect();
-                FullRange::Exr.write(&mut file, [width, height], &numbers, None)?;
+                FullRange::Exr.write(&mut file, [width, height], &numbers, &About::default())?;
             }
             (NumberFormat::Exr, Self::Indices { of, indices }) => {
                 let samples = indices.iter().map(|index| index.unwrap_or(NONE)).collect();

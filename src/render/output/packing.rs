@@ -17,8 +17,9 @@ const TOGETHER: usize = 12;
 pub(super) struct Packing<'r> {
     compression: Compression,
     renderer: Option<&'r Renderer>,
-    /// The length of a row in bytes.
+    /// The length of a row and of a pixel in bytes.
     row: usize,
+    pixel: usize,
     /// The length of a piece in bytes, except for the last.
     piece: usize,
     /// The number of bytes of the image that are still to come.
@@ -33,18 +34,20 @@ pub(super) struct Packing<'r> {
 }
 
 impl<'r> Packing<'r> {
-    /// Makes a packer for an image of this width and height in pixels. The pieces depend only on the size.
+    /// Makes a packer for an image of this width and height in pixels, which have as many bytes each. The pieces depend only
+    /// on the sizes.
     pub fn new(
-        [width, height]: [usize; 2],
+        ([width, height], pixel): ([usize; 2], usize),
         compression: Compression,
         renderer: Option<&'r Renderer>,
     ) -> Self {
-        let (row, left) = (3 * width, 3 * width * height);
+        let (row, left) = (pixel * width, pixel * width * height);
         let pieces = left.div_ceil(PIECE).clamp(1, height);
         Self {
             compression,
             renderer,
             row,
+            pixel,
             piece: row * height.div_ceil(pieces),
             left,
             rows: Vec::new(),
@@ -119,7 +122,7 @@ impl<'r> Packing<'r> {
         let Some(last) = rows.rchunks_exact(self.row).next() else { return };
         let below = last.to_vec();
         let above = std::mem::replace(&mut self.above, below);
-        self.pieces.push(Piece { above, rows, row: self.row, is_last: self.left == 0 });
+        self.pieces.push(Piece { above, rows, row: self.row, pixel: self.pixel, is_last: self.left == 0 });
     }
 
     /// Compresses the waiting pieces.

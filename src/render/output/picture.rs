@@ -24,6 +24,15 @@ pub struct About<'t> {
     pub texts: &'t [(&'t str, String)],
     /// The number of pixels per inch with which the image is to be printed.
     pub dpi: Option<u32>,
+    /// Whether pixels have alpha, which is not premultiplied in files of bytes and is in files of full range.
+    pub alpha: bool,
+}
+
+impl About<'_> {
+    /// Returns the number of channels of a pixel.
+    pub fn channels(&self) -> usize {
+        if self.alpha { 4 } else { 3 }
+    }
 }
 
 /// The name is the extension of the format's files. A PNG of that name is compressed for speed.
@@ -59,7 +68,8 @@ impl Format {
     }
 
     /// Writes a whole image as [`write`](Self::write) does, and compresses it on a renderer's threads, if there is one.
-    /// The bytes do not depend on the threads. Only a PNG says anything besides its pixels.
+    /// The bytes do not depend on the threads. Only a PNG says anything besides its pixels, and can have a fourth byte of
+    /// each, its alpha.
     ///
     /// # Errors
     /// Returns the errors of [`write`](Self::write).
@@ -72,6 +82,7 @@ impl Format {
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
     ) -> io::Result<()> {
         match self {
+            Self::Ppm if about.alpha => Err(io::ErrorKind::InvalidInput.into()),
             Self::Ppm => write_ppm(&mut out, width, height, rows),
             Self::Png(compression) => {
                 write_png(&mut out, [width, height], about, (compression, renderer), rows)
@@ -112,7 +123,7 @@ pub enum Rows {
 }
 
 impl Rows {
-    /// Reads the next row: red, green and blue of each pixel.
+    /// Reads the next row: red, green and blue of each pixel, and alpha if the file has it.
     ///
     /// # Errors
     /// Returns the errors of the file, and an error where the file has no further row of this length.
@@ -165,7 +176,7 @@ fn write_png(
 ) -> io::Result<()> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
     let mut encoder = png::Encoder::new(out, size(width)?, size(height)?);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if about.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(AS_SHOWN);
     encoder.set_pixel_dims(about.dpi.map(|dpi| {
@@ -181,7 +192,7 @@ fn write_png(
     }
     let mut writer = encoder.write_header()?;
     let put = |bytes: &[u8]| writer.write_chunk(png::chunk::IDAT, bytes).map_err(io::Error::from);
-    Packing::new([width, height], compression, renderer).run(rows, put)?;
+    Packing::new(([width, height], about.channels()), compression, renderer).run(rows, put)?;
     Ok(writer.finish()?)
 }
 

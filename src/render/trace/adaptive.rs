@@ -9,6 +9,8 @@
 //! pixel separates its corners, and a shadow edge that crosses a light separates points of the light's rim, to which
 //! the probes' rays go.
 //!
+//! Where the camera has alpha, what is [clear](super::alpha) counts as a channel of its own.
+//!
 //! [`Sensor::samples`]: tabray_world::sensor::Sensor::samples
 
 use super::arrays::VectorList;
@@ -21,6 +23,7 @@ use crate::features::FEATURE_SAMPLES;
 use crate::observer::{Count, TraceObserver};
 use std::mem::take;
 use std::ops::Range;
+use tabray_world::display::Display;
 use tabray_world::geometry::ray_packet::PACKET_SIZE;
 use tabray_world::sample;
 use tabray_world::sensor::Adaptive;
@@ -71,9 +74,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         adaptive: Adaptive,
         primary: &mut PrimaryScratch,
     ) {
-        let PrimaryScratch { group, seen, colours, adaptive: scratch } = primary;
+        let PrimaryScratch { group, seen, colours, alpha, adaptive: scratch } = primary;
         let mut colours = colours.resized(pixels.len());
-        let AdaptiveScratch { probes, grid, estimates, active, runs } = scratch;
+        let AdaptiveScratch { probes, grids, estimates, clear, active, runs } = scratch;
         let (camera, features) = (&self.plan.camera, self.plan.features.as_ref());
         let has_features = features.is_some_and(|features| features.count() != Some(0));
         let is_unbounded = sampled::is_unbounded(self.plan);
@@ -84,9 +87,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 || count < FEATURE_SAMPLES && has_feature()
         };
         self.scratch.path_hashes.is_on = true;
-        let mut rays = Rays { tracer: self, group, seen, is_unbounded, runs: take(runs) };
+        let mut rays = Rays { tracer: self, group, seen, is_unbounded, clear, runs: take(runs) };
         let is_careful = adaptive.error.is_some() && rays.tracer.is_light_spread_out();
-        rays.begin(pixels, probes, grid, estimates, is_careful);
+        rays.begin(pixels, probes, grids, estimates, is_careful);
         let next_goal = |estimate: &Estimate, pixel: &[usize; 2], mut goal: u32| {
             // If nothing bounds the light, a pixel may end with the first number of samples.
             while !is_unbounded && goal < adaptive.most && is_short(estimate, pixel, goal) {
@@ -97,9 +100,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         for (estimate, pixel) in estimates.iter_mut().zip(pixels) {
             estimate.set_goal(next_goal(estimate, pixel, camera.samples));
         }
+        rays.clear.iter_mut().zip(&*estimates).for_each(|(clear, of)| clear.set_goal(of.goal));
         active.clear();
         active.extend(0..pixels.len() as u32);
         let (display, doubt) = (camera.display(), if adaptive.error.is_some() { DOUBT } else { 1.0 });
+        let next_error = |estimate: &mut Estimate, clear: &mut Option<&mut Estimate>| {
+            let of_clear = |clear: &mut &mut Estimate| clear.next_error(&Display::LINEAR, doubt);
+            estimate.next_error(&display, doubt).max(clear.as_mut().map_or(0.0, of_clear))
+        };
         while !active.is_empty() {
             // The objects that a pixel's rays have met matter only while all rays have met the same ones, or for small
             // objects.
@@ -109,19 +117,22 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
             active.retain(|of| {
                 let (estimate, pixel) = (&mut estimates[*of as usize], &pixels[*of as usize]);
+                let mut clear = rays.clear.get_mut(*of as usize);
                 let goal = estimate.goal;
                 // More samples do not help a pixel that is off by an unknown amount.
                 let goes_on = goal < adaptive.most
                     && estimate.missing != f64::INFINITY
                     && (is_short(estimate, pixel, goal)
-                        || estimate.next_error(&display, doubt) > most_error(adaptive, goal));
+                        || next_error(estimate, &mut clear) > most_error(adaptive, goal));
                 if goes_on {
                     estimate.set_goal(next_goal(estimate, pixel, 2 * goal));
+                    clear.into_iter().for_each(|clear| clear.set_goal(estimate.goal));
                 }
                 goes_on
             });
         }
         *runs = rays.runs;
+        alpha.extend(rays.clear.iter().map(|clear| 1.0 - clear.colour().x));
         self.scratch.path_hashes.is_on = false;
         for (pixel, estimate) in estimates.iter().enumerate() {
             colours.set(pixel, estimate.colour());
@@ -138,6 +149,8 @@ struct Rays<'r, 'm, 'w, W> {
     seen: &'r mut VectorList,
     /// Whether nothing bounds the light that rays may return.
     is_unbounded: bool,
+    /// The estimates of what is clear of pixels; empty where the camera has no alpha.
+    clear: &'r mut Vec<Estimate>,
     /// The samples that wait.
     runs: Vec<SampleRun>,
 }
@@ -148,7 +161,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         &mut self,
         pixels: &[[usize; 2]],
         probes: &mut Vec<[usize; 2]>,
-        grid: &mut Vec<RaySummary>,
+        grids: &mut [Vec<RaySummary>; 2],
         estimates: &mut Vec<Estimate>,
         is_careful: bool,
     ) {
@@ -157,10 +170,15 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         // Corners are counted from one pixel below and to the left of the image, where only probes look.
         let wide = right - left + AROUND;
         let place = |[x, y]: [usize; 2]| (y - low) * wide + x - left;
-        grid.clear();
-        grid.resize(wide * (high - low + AROUND), RaySummary::default());
+        let count = wide * (high - low + AROUND);
+        let has_alpha = self.tracer.plan.camera.alpha;
+        let grids = &mut grids[..if has_alpha { 2 } else { 1 }];
+        for grid in grids.iter_mut() {
+            grid.clear();
+            grid.resize(count, RaySummary::default());
+        }
         probes.clear();
-        let mut is_wanted = vec![false; grid.len()];
+        let mut is_wanted = vec![false; count];
         for [x, y] in pixels {
             (*y..y + AROUND).for_each(|y| is_wanted[place([*x, y])..][..AROUND].fill(true));
         }
@@ -169,25 +187,32 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             probes.push([index % wide + left, index / wide + low]);
         }
         for corners in probes.chunks(PACKET_SIZE) {
-            self.probe(corners, |corner, found| grid[place(corner)] = found);
+            self.probe(corners, |channel, corner, found| grids[channel][place(corner)] = found);
         }
         // Each place first includes the results of the next place, and then the results collected two places on. So it
         // has the results of four places in a row, and after the same steps by rows, of four rows.
-        for step in [1, 2, wide, 2 * wide] {
-            for from in 0..grid.len() - step {
-                let next = grid[from + step];
-                grid[from].include(&next);
+        for grid in grids.iter_mut() {
+            for step in [1, 2, wide, 2 * wide] {
+                for from in 0..grid.len() - step {
+                    let next = grid[from + step];
+                    grid[from].include(&next);
+                }
             }
         }
         estimates.resize(pixels.len(), Estimate::default());
         let least = self.tracer.plan.camera.samples;
         for (estimate, pixel) in estimates.iter_mut().zip(pixels) {
-            estimate.begin(grid[place(*pixel)], least, is_careful);
+            estimate.begin(grids[0][place(*pixel)], least, is_careful);
+        }
+        self.clear.resize(if has_alpha { pixels.len() } else { 0 }, Estimate::default());
+        for (clear, pixel) in self.clear.iter_mut().zip(pixels) {
+            clear.begin(grids[1][place(*pixel)], least, is_careful);
         }
     }
 
-    /// Traces probes at corners, and reports the results of each.
-    fn probe(&mut self, corners: &[[usize; 2]], mut report: impl FnMut([usize; 2], RaySummary)) {
+    /// Traces probes at corners, and reports the results of each: 0 with its colour and, where the camera has alpha, 1 with
+    /// what is clear.
+    fn probe(&mut self, corners: &[[usize; 2]], mut report: impl FnMut(usize, [usize; 2], RaySummary)) {
         let Self { tracer, group, seen, is_unbounded, .. } = self;
         let (len, camera) = (corners.len(), &tracer.plan.camera);
         let Scratch { places: [x, y], samples, are_probes, .. } = &mut *tracer.scratch;
@@ -203,8 +228,11 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
         }
         tracer.colours(group, seen);
         tracer.scratch.are_probes = false;
-        let found = self.found(0..len);
-        corners.iter().enumerate().for_each(|(lane, corner)| report(*corner, RaySummary::of(&found, lane)));
+        let all = [Some(self.found(0..len)), camera.alpha.then(|| self.found_clear(0..len))];
+        for (channel, found) in all.into_iter().flatten().enumerate() {
+            let each = corners.iter().enumerate();
+            each.for_each(|(lane, corner)| report(channel, *corner, RaySummary::of(&found, lane)));
+        }
     }
 
     /// Returns the results of the rays of some lanes.
@@ -217,6 +245,12 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             marks: &marks[recorded.clone()],
             distances: &distances[recorded],
         }
+    }
+
+    /// Returns what is clear of the rays of some lanes, in place of their colours.
+    fn found_clear(&self, lanes: Range<usize>) -> RayResults<'_> {
+        let colours = self.tracer.clear(lanes.end).part(lanes.clone());
+        RayResults { colours, ..self.found(lanes) }
     }
 
     /// Traces the samples that active pixels lack, either of the pixels where rays have hit different surfaces, or of
@@ -302,15 +336,20 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             }
         }
         tracer.colours(group, seen);
+        let mut clear = take(self.clear);
         for SampleRun { of, lanes, .. } in &self.runs {
             let estimate = &mut estimates[*of as usize];
             estimate.add(&self.found(lanes.clone()));
+            if let Some(clear) = clear.get_mut(*of as usize) {
+                clear.add(&self.found_clear(lanes.clone()));
+            }
             if self.tracer.scratch.any_missing {
                 // One after the other, so that the sum does not depend on the packets.
                 let missing = lanes.clone().map(|lane| self.tracer.missing(lane));
                 estimate.missing = missing.fold(estimate.missing, |sum, one| sum + one);
             }
         }
+        *self.clear = clear;
         self.runs.clear();
     }
 }

@@ -131,6 +131,8 @@ pub struct Scratch {
     pub(super) any_missing: bool,
     /// For each primary ray, whether a path was too long under the notes' rules; empty while none was.
     pub(super) far: Vec<bool>,
+    /// The fraction of each current primary ray that is clear; empty where the camera has no alpha.
+    pub(super) clear: Vec<f64>,
     /// The primary rays whose first hit could not be decided.
     pub(super) undecided: UndecidedScratch,
 }
@@ -170,6 +172,8 @@ pub(super) struct PrimaryScratch {
     pub seen: VectorList,
     /// The colours of the pixels.
     pub colours: VectorList,
+    /// The alpha of the pixels; empty where the camera has none.
+    pub alpha: Vec<f64>,
     pub adaptive: AdaptiveScratch,
 }
 

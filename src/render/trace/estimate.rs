@@ -33,10 +33,13 @@ const FAR: f64 = 4.0;
 pub(super) struct AdaptiveScratch {
     /// The corners that are probed, by column and row.
     pub probes: Vec<[usize; 2]>,
-    /// The results at each point of a grid of corners around the pixels.
-    pub grid: Vec<RaySummary>,
+    /// The results at each point of a grid of corners around the pixels and, where the camera has alpha, what is clear
+    /// there.
+    pub grids: [Vec<RaySummary>; 2],
     /// The pixels' estimates.
     pub estimates: Vec<Estimate>,
+    /// The estimates of what is clear of the pixels, as colours; empty where the camera has no alpha.
+    pub clear: Vec<Estimate>,
     /// The indices of the pixels that take more samples.
     pub active: Vec<u32>,
     /// The samples to be traced next.
@@ -46,7 +49,9 @@ pub(super) struct AdaptiveScratch {
 impl AdaptiveScratch {
     /// Returns the number of samples of the first pixel, and the estimated error of its colour.
     pub fn first(&self, display: &Display) -> (u32, f64) {
-        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(display, 1.0)))
+        let clear = self.clear.first().map_or(0.0, |clear| clear.error(&Display::LINEAR, 1.0));
+        let of = |estimate: &Estimate| (estimate.count, estimate.error(display, 1.0).max(clear));
+        self.estimates.first().map_or((0, 0.0), of)
     }
 }
 

@@ -198,7 +198,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             if before.depth as usize >= self.plan.max_depth {
                 continue;
             }
-            let passed = surface.passed.get(lane).map_or(before.weight, |passed| before.weight * *passed);
+            let passed_here = surface.passed.get(lane).copied();
+            let passed = passed_here.map_or(before.weight, |passed| before.weight * passed);
+            let clear = match self.plan.camera.alpha {
+                true => before.clear * (1.0 - covered) * passed_here.map_or(1.0, Rgb::min_element),
+                false => 0.0,
+            };
             let ray = surface.open_ray(lane, before);
             let open = |weight: Rgb, dir: DVec3, side: Side, kind: RayKind| {
                 let keeps = match kind {
@@ -232,6 +237,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     density,
                     chosen,
                     since,
+                    clear: 0.0,
                     ..ray
                 };
                 (weight != Rgb::ZERO).then_some(ray)
@@ -250,6 +256,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             if !covers_all {
                 rays[3] = open(beyond, group.dir.get(lane), side.opposite(), RayKind::Transmitted);
             }
+            // What is not covered goes on alone, or with what is transmitted unbent.
+            let past = if crossings.is_some() { 3 } else { 0 };
+            rays[past].iter_mut().for_each(|ray| ray.clear = clear);
             if self.plan.camera.bounces != 0 {
                 rays[2] = scattered;
                 self.choose(&before, rays);

@@ -7,6 +7,7 @@
 
 mod adaptive;
 mod aim;
+mod alpha;
 mod arrays;
 mod budget;
 mod certain;
@@ -266,12 +267,22 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours of pixels, given by column and row from the bottom. Up to [`PACKET_SIZE`] rays are traced
     /// together.
     pub fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
+        self.pixels_with_alpha(pixels).0
+    }
+
+    /// Computes the colours of pixels as [`pixels`](Self::pixels) does, and the alpha of each; none where the camera has no
+    /// alpha. With alpha, a colour is the light of objects alone, and so premultiplied.
+    pub fn pixels_with_alpha(&mut self, pixels: &[[usize; 2]]) -> (View<'_>, &[f64]) {
         let camera = &self.plan.camera;
         let mut primary = self.scratch.primary.take().unwrap_or_default();
+        primary.alpha.clear();
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
         match (camera.adaptive, &self.plan.prover) {
-            (Some(adaptive), Some(prover)) => self.certain_pixels(pixels, adaptive, prover, &mut primary),
-            (Some(adaptive), None) => self.adaptive_pixels(pixels, adaptive, &mut primary),
+            // Proofs are about colours with the background.
+            (Some(adaptive), Some(prover)) if !camera.alpha => {
+                self.certain_pixels(pixels, adaptive, prover, &mut primary)
+            }
+            (Some(adaptive), _) => self.adaptive_pixels(pixels, adaptive, &mut primary),
             (None, _) if camera.is_single() => self.middles(pixels, &mut primary),
             (None, _) if sampled::is_unbounded(self.plan) => self.one_by_one(pixels, &mut primary),
             (None, _) => self.fixed_samples(pixels, &mut primary),
@@ -279,7 +290,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if !self.scratch.undecided.pixels.is_empty() {
             self.report_undecided();
         }
-        self.scratch.primary.insert(primary).colours.view(pixels.len())
+        let PrimaryScratch { colours, alpha, .. } = &**self.scratch.primary.insert(primary);
+        (colours.view(pixels.len()), alpha)
     }
 
     /// Computes the colours of rays through places of the image, in pixels, each with its sample.
@@ -305,7 +317,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Computes the colours of pixels by one ray through the middle of each.
     fn middles(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
-        let PrimaryScratch { group, seen, colours, .. } = primary;
+        let PrimaryScratch { group, seen, colours, alpha, .. } = primary;
         let mut colours = colours.resized(pixels.len());
         self.scratch.samples = Samples::default();
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
@@ -314,6 +326,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.fill_primary(group, pixels.len());
             self.colours(group, seen);
             colours.copy_at(first, seen.view(pixels.len()));
+            alpha.extend(self.scratch.clear.iter().map(|clear| 1.0 - clear));
             if self.scratch.any_missing {
                 (0..pixels.len()).for_each(|lane| self.cut(self.missing(lane)));
             }
@@ -324,10 +337,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// into a packet.
     fn fixed_samples(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
         let camera = &self.plan.camera;
-        let PrimaryScratch { group, seen, colours, .. } = primary;
+        let PrimaryScratch { group, seen, colours, alpha, .. } = primary;
         let mut colours = colours.resized(pixels.len());
         let samples = camera.samples as usize;
-        let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
+        let (mut sum, mut clear, mut missing, mut count) = (Rgb::ZERO, 0.0, 0.0, 0);
         while count < samples * pixels.len() {
             let len = PACKET_SIZE.min(samples * pixels.len() - count);
             let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
@@ -340,6 +353,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 let end = len.min(lanes.start + samples - count % samples);
                 let of_one = lanes.start..end;
                 sum = seen.view(len).part(of_one.clone()).added_to(sum);
+                if camera.alpha {
+                    clear = self.scratch.clear[of_one.clone()].iter().fold(clear, |clear, one| clear + one);
+                }
                 if self.scratch.any_missing {
                     missing = of_one.fold(missing, |missing, lane| missing + self.missing(lane));
                 }
@@ -348,7 +364,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 if count % samples == 0 {
                     colours.set(count / samples - 1, sum / f64::from(camera.samples));
                     self.cut(missing / f64::from(camera.samples));
-                    (sum, missing) = (Rgb::ZERO, 0.0);
+                    if camera.alpha {
+                        alpha.push(1.0 - clear / f64::from(camera.samples));
+                    }
+                    (sum, clear, missing) = (Rgb::ZERO, 0.0, 0.0);
                 }
             }
         }
@@ -394,6 +413,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
         if self.scratch.path_hashes.is_on {
             self.scratch.path_hashes.begin(group.len);
+        }
+        self.scratch.clear.clear();
+        if self.plan.camera.alpha {
+            self.scratch.clear.resize(group.len, 0.0);
         }
         if W::SEES {
             self.observer.see(Event::Begin(RayPurpose::Primary));

@@ -40,11 +40,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours of pixels sample by sample.
     pub(super) fn one_by_one(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
         let camera = &self.plan.camera;
-        let PrimaryScratch { group, seen, colours, .. } = primary;
+        let PrimaryScratch { group, seen, colours, alpha, .. } = primary;
         let mut colours = colours.resized(pixels.len());
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
             let len = pixels.len();
             let mut sums = vec![(Rgb::ZERO, 0.0); len];
+            let mut clear = vec![0.0; if camera.alpha { len } else { 0 }];
             for index in 0..camera.samples {
                 let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
                 camera.scatter_each(self.cpu, pixels, index, drawn, [&mut x[..len], &mut y[..len]]);
@@ -57,11 +58,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     *sum += seen.get(lane);
                     *missing += self.missing(lane);
                 }
+                clear.iter_mut().zip(&self.scratch.clear).for_each(|(sum, one)| *sum += one);
             }
             for (lane, (sum, missing)) in sums.into_iter().enumerate() {
                 colours.set(first + lane, sum / f64::from(camera.samples));
                 self.cut(missing / f64::from(camera.samples));
             }
+            alpha.extend(clear.iter().map(|clear| 1.0 - clear / f64::from(camera.samples)));
         }
     }
 }

@@ -52,6 +52,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                             self.absorb_endlessly(group, lanes, colours);
                         }
                     }
+                    if self.plan.camera.alpha {
+                        self.show_through(group, &hits.far, lanes, colours);
+                    }
                     continue;
                 }
                 let object = hit_ids[usize::from(lanes[0])] as usize - 1;

@@ -79,19 +79,24 @@ pub(super) struct OpenRay {
     /// to its origin, in world units.
     pub chosen: u32,
     pub since: f64,
+    /// The part of the sample that it shows past all objects, where the image has alpha; otherwise only that of a primary
+    /// ray is not 0.
+    pub clear: f64,
 }
 
 impl OpenRay {
     /// Returns the range of light that it can add.
     fn range(&self, depth: &Depth) -> LightRange {
         let side = usize::from(self.side == Side::Inside);
-        let LightRange { low, high } = match (self.kind, self.counted) {
+        let range = match (self.kind, self.counted) {
             (RayKind::Scattered, _) => depth.scattered[self.bounces as usize - 1],
             (_, CountedLight::All) if self.density == f64::INFINITY => {
                 depth.ranges[self.object as usize][side]
             }
             (_, _) => depth.ranges[self.object as usize][side].down_to_black(),
         };
+        // A background that it shows past all objects does not count.
+        let LightRange { low, high } = if self.clear == 0.0 { range } else { range.down_to_black() };
         let [one, other] = [low, high].map(|light| times(self.weight, light));
         LightRange { low: one.min(other), high: one.max(other) }
     }
@@ -118,6 +123,7 @@ impl OpenRay {
             density: f64::INFINITY,
             chosen: 0,
             since: 0.0,
+            clear: 1.0,
         }
     }
 }
@@ -158,6 +164,8 @@ pub(super) struct Tree {
     open: BinaryHeap<OpenRay>,
     /// The range of light that bounded open rays, and rays too faint to be kept, can add.
     left: LightRange,
+    /// The part of the sample that is clear as far as open rays may show.
+    clear: f64,
     /// The number of open rays that nothing bounds.
     unbounded: u32,
     /// The number of rays that were followed, and the work that they took.
@@ -250,7 +258,7 @@ impl Tree {
     /// Adds an open ray. One that is too faint is not followed.
     fn push(&mut self, mut ray: OpenRay, depth: &Depth, ends: &Ends) {
         let LightRange { low, high } = ray.range(depth);
-        ray.width = (high - low).max_element();
+        ray.width = (high - low).max_element().max(ray.clear);
         if !ray.width.is_finite() {
             ray.width = f64::INFINITY;
             self.unbounded += 1;
@@ -261,12 +269,14 @@ impl Tree {
                 return;
             }
         }
+        self.clear += ray.clear;
         self.open.push(ray);
     }
 
     /// Takes the rays that are followed next, unless the tree has ended.
     pub fn next(&mut self, ends: &Ends, depth: &Depth, wave: &mut Vec<OpenRay>) {
-        if self.is_over() || self.bounds().is_some_and(|bounds| ends.are_met(bounds)) {
+        let is_met = |bounds| ends.are_met(bounds) && 255.0 * self.clear < ENDED;
+        if self.is_over() || self.bounds().is_some_and(is_met) {
             return;
         }
         let Some(heaviest) = self.open.peek().map(|ray| ray.width) else { return };
@@ -288,6 +298,13 @@ impl Tree {
 
     /// Tells how the tree has ended.
     pub fn end(&self, ends: &Ends) -> End {
+        let End { colour, apart } = self.end_of_colour(ends);
+        // What is clear is a channel of its own.
+        let clear = 255.0 * self.clear;
+        End { colour, apart: if clear <= SHOWN { apart } else { apart.max(clear) } }
+    }
+
+    fn end_of_colour(&self, ends: &Ends) -> End {
         let Some(bounds) = self.bounds() else { return End { colour: self.found, apart: f64::INFINITY } };
         if bounds[0] == bounds[1] {
             return End { colour: bounds[0], apart: 0.0 };
@@ -316,6 +333,7 @@ impl Tree {
             return None;
         }
         let ray = self.open.pop()?;
+        self.clear -= ray.clear;
         if ray.width == f64::INFINITY {
             self.unbounded -= 1;
         } else {

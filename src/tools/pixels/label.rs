@@ -20,8 +20,12 @@ pub enum PixelFormat {
     Ppm,
     /// Pixels of a PNG with this compression: three bytes each.
     Png(#[serde(with = "by_name")] Compression),
+    /// Pixels of a PNG with alpha and this compression: four bytes each.
+    PngAlpha(#[serde(with = "by_name")] Compression),
     /// Pixels of an EXR: three numbers of 32 bits each.
     Exr,
+    /// Pixels of an EXR with alpha: four numbers of 32 bits each.
+    ExrAlpha,
     /// Pixels of a PFM: three numbers of 32 bits each.
     Pfm,
     /// Pixels of an auxiliary image, which is a PNG with this compression, or else a PPM: three numbers of 64 bits
@@ -74,27 +78,36 @@ mod by_name {
 }
 
 impl PixelFormat {
-    /// Returns the format of the parts of an image of this format.
-    pub fn picture(format: Format) -> Self {
+    /// Returns the format of the parts of an image of this format. A PPM has no alpha.
+    pub fn picture(format: Format, has_alpha: bool) -> Self {
         match format {
             Format::Ppm => Self::Ppm,
+            Format::Png(compression) if has_alpha => Self::PngAlpha(compression),
             Format::Png(compression) => Self::Png(compression),
         }
     }
 
-    /// Returns the format of the parts of an image of full range.
-    pub fn full_range(format: FullRange) -> Self {
+    /// Returns the format of the parts of an image of full range. A PFM has no alpha.
+    pub fn full_range(format: FullRange, has_alpha: bool) -> Self {
         match format {
+            FullRange::Exr if has_alpha => Self::ExrAlpha,
             FullRange::Exr => Self::Exr,
             FullRange::Pfm => Self::Pfm,
         }
+    }
+
+    /// Tells whether the pixels have alpha.
+    pub fn has_alpha(self) -> bool {
+        matches!(self, Self::PngAlpha(_) | Self::ExrAlpha)
     }
 
     /// Returns the length of a pixel in bytes.
     pub fn pixel(self) -> usize {
         match self {
             Self::Ppm | Self::Png(_) => 3,
+            Self::PngAlpha(_) => 4,
             Self::Exr | Self::Pfm => 12,
+            Self::ExrAlpha => 16,
             Self::Beside(..) => 24,
         }
     }

@@ -75,9 +75,13 @@ pub(super) static BOUNCES: Pparm<i64> = Pparm::or(
 .between(0.0, 64.0)
 .not_dumped();
 
+/// Whether image files have alpha.
+pub(super) static ALPHA: Pparm<bool> =
+    Pparm::or("alpha", "whether image files are transparent where they show no object", false).not_dumped();
+
 /// The attributes that every camera has before and after its own.
 pub(super) const FILM: [Table; 2] =
-    [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES, &EXPOSURE, &TONE, &TRANSFER, &BOUNCES]];
+    [&[&PIXELDIM], &[&SAMPLES, &ACCURACY, &RULES, &EXPOSURE, &TONE, &TRANSFER, &BOUNCES, &ALPHA]];
 
 /// How the light of a lamp weakens, and the distance at which it is as bright as its emissivity.
 pub(super) static FALLOFF: Pparm<Falloff> =

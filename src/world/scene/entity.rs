@@ -10,8 +10,8 @@ use crate::material::Material;
 use crate::rules::{Fading, Rules};
 use crate::scene::attribute::Attribute;
 use crate::scene::common::{
-    ACCURACY, AT, BACKGROUND, BOUNCES, EXPOSURE, FALLOFF, FILM, LIGHT, LIGHTS, MATERIAL, MATERIAL_OF_ALL,
-    OBJECT, OF_OBJECTS, PIXELDIM, RULES, SAMPLES, SHADER, TONE, TRANSFER,
+    ACCURACY, ALPHA, AT, BACKGROUND, BOUNCES, EXPOSURE, FALLOFF, FILM, LIGHT, LIGHTS, MATERIAL,
+    MATERIAL_OF_ALL, OBJECT, OF_OBJECTS, PIXELDIM, RULES, SAMPLES, SHADER, TONE, TRANSFER,
 };
 use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
@@ -317,6 +317,7 @@ impl Args {
             tone,
             transfer,
             bounces: bounces as u32,
+            alpha: self.get(&ALPHA),
             ..Sensor::new(camera, self.get(&PIXELDIM).map(|side| side as usize))
         }
     }

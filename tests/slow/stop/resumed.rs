@@ -82,6 +82,11 @@ fn a_png_of_adaptive_samples_interrupted_at_random_and_resumed_is_the_same() {
     interrupted_ten_times(5, "a.png", SLOW, &["--size", "420", "--samples", "2..16"], &["--cpu", "baseline"]);
 }
 
+#[test]
+fn a_transparent_png_interrupted_at_random_and_resumed_is_the_same() {
+    interrupted_ten_times(6, "a.png", "gallery/leaf.ray", &["--size", "160", "--alpha"], &["--threads", "1"]);
+}
+
 /// The image's bands have 40 rows, or 8 where memory is limited.
 #[test]
 fn a_picture_of_many_bands_interrupted_at_random_and_resumed_is_the_same() {
