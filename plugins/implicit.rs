@@ -141,10 +141,12 @@ impl Surface {
         } else {
             match field::regularity(&self.formula, self.corners) {
                 Regularity::Bounded => None,
-                Regularity::MayJump => Some("its formula may jump where it would have to be 0"),
-                Regularity::TooCostly => {
-                    Some("its formula has too many operations to check that it does not jump")
-                }
+                Regularity::MayJump => Some(
+                    "its formula may step from below 0 to above it, as by `floor` or `if`, which leaves a gap in its surface",
+                ),
+                Regularity::TooCostly => Some(
+                    "its formula has too many operations to check that no step of it leaves a gap in its surface",
+                ),
             }
         }
     }

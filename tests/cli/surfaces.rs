@@ -87,3 +87,20 @@ fn a_mesh_needs_no_camera_and_tells_what_it_takes() {
     assert!(lines[0].starts_with("about ") && lines[0].ends_with(" triangles are to be made"), "{err}");
     assert!(lines[1].starts_with("{\"progress\":{\"done\":"), "{err}");
 }
+
+#[test]
+fn what_is_not_proven_of_how_a_mesh_is_connected_is_told_with_what_to_do() {
+    let folder = folder();
+    let scene = "material m { } box b { material m  center 0 0 0  size 1 1 1 }
+        heart h { material m  center 0 0 0  size 1 }";
+    fs::write(folder.path().join("a.ray"), scene).expect("written");
+    for (name, said) in [
+        ("b", "connected as the object is: look at it where parts nearly touch\n"),
+        ("h", "as at a node or an edge; a smaller `--error` makes these places smaller\n"),
+    ] {
+        let args = ["mesh", "a.ray", name, "-o", "a.ply", "--error", "0.1"];
+        let (status, _, err) = outcome(tabray(&folder).args(args));
+        assert!(status == 0 && err.contains(said), "{err}");
+        fs::remove_file(folder.path().join("a.ply")).expect("a mesh");
+    }
+}

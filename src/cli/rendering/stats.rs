@@ -136,7 +136,7 @@ impl Stats {
             let _ = writeln!(out, "{:<12} {footprints:>14}", "footprints");
         }
         let BudgetCuts { pixels, most } = tally.flaws.cuts;
-        let _ = writeln!(out, "\n{:<12} {:>14} {:>14}", "cut off", "pixels", "levels");
+        let _ = writeln!(out, "\n{:<12} {:>14} {:>14}", "not finished", "pixels", "levels");
         let _ = writeln!(out, "{:<12} {pixels:>14} {:>14}", "at most", short(255.0 * most));
         let undecided = undecided(&tally, model);
         if !undecided.is_empty() {

@@ -119,10 +119,15 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
                 count(places.len(), "cell"),
                 listed(places)
             ),
-            Some("its normals may turn by a right angle there, as at a node or an edge"),
+            Some(
+                "its normals may turn by a right angle there, as at a node or an edge; a smaller `--error` makes these \
+                 places smaller",
+            ),
         ),
         Some(_) => {}
-        None => messages::note("it was not checked whether the mesh is connected as the object is"),
+        None => messages::note(
+            "it was not checked whether the mesh is connected as the object is: look at it where parts nearly touch",
+        ),
     }
     if made.far.is_empty() {
         messages::note(&format!(
