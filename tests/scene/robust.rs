@@ -270,6 +270,7 @@ fn a_fault_within_curly_quotes_is_shown_in_whole_letters() {
     for rest in [
         "sphere “ball ” { }",
         "sphere “plane ” { material red  center 4 3 -4  raduis 1 }\n“plane ” wall { }",
+        "sphere a { material “x y z”  center 4 3 -4  radius 1 }",
         "sphere a { material “x y”  center “4 3 ” -4  radius 1 }\nsphere „b“ {",
     ] {
         let text = format!("{head}{rest}");

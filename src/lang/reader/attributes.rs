@@ -51,12 +51,15 @@ impl AttributeChecker<'_, '_> {
             let known = find_attribute(entity, &word.text);
             match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
                 None => match &mut last {
-                    Some((.., further))
-                        if [word].into_iter().chain(words).all(|word| self.may_be_of_a_name(word)) =>
+                    Some((_, name, further))
+                        if [*name, word].into_iter().chain(words).all(|word| self.may_be_of_a_name(word)) =>
                     {
                         further.push(pair);
                     }
-                    _ => unknown.push(pair),
+                    _ => {
+                        split.extend(last.take());
+                        unknown.push(pair);
+                    }
                 },
                 Some(at) => {
                     split.extend(last.take());

@@ -127,6 +127,7 @@ impl AttributeChecker<'_, '_> {
         let is_attribute = |entity: &'static Entity| find_attribute(entity, &word.text).is_some();
         self.report.syntax() == Syntax::Notes
             && word.text.starts_with(char::is_alphabetic)
+            && word.text.chars().all(|letter| letter.is_alphanumeric() || matches!(letter, '_' | '-'))
             && !matches!(word.text.as_ref(), "yes" | "no" | "true" | "false" | "on" | "off")
             && files::stem(&word.text).is_none()
             && near_attribute(self.entity, &word.text, self.report.guesses()).is_none()
