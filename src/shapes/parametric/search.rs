@@ -21,9 +21,15 @@ fn max_steps<F: Float>() -> usize {
     if F::IS_LONG { 1024 } else { 2304 }
 }
 
-/// The maximum number of steps for a line whose t are all one within its error: without an order, only a line with
+/// The maximum number of steps for a line whose t are nearly one within its error: without an order, only a line with
 /// hardly a hit is decided, and that takes few steps.
 const FEW_STEPS: usize = 16;
+
+/// Returns the least error of a line, as a fraction of a surface's size, at which t have hardly an order. With 237 bits,
+/// what is decided at all is decided far more finely.
+fn blurring<F: Float>() -> F {
+    F::of(if F::IS_LONG { power_of_two(-40) } else { 1.0 })
+}
 
 /// The maximum number of boxes that such a line is compared with. Where products overflow, it meets all.
 const FEW_BOXES: usize = 1024;
@@ -119,8 +125,14 @@ where
         if let Some(Aabb { low, high }) = self.shape.tree.bounds() {
             let nothing = Found { hit: None, undecided: None, narrow: None };
             let Some((entry, is_blurred)) = self.line.blurred(low, high) else { return nothing };
-            let has_no_order = is_blurred[self.axes[0]];
-            if is_blurred == [true; 3] || has_no_order && !self.line.is_exact() {
+            let steepest = self.axes[0];
+            let error = self.line.at(Interval::point(entry))[steepest].width();
+            let has_no_order =
+                is_blurred[steepest] || error > blurring::<F>() * F::of(high[steepest] - low[steepest]);
+            // No part is told from others where products of the line's numbers overflow.
+            let whole = per_axis(|axis| Interval { low: F::of(low[axis]), high: F::of(high[axis]) });
+            let overflows = self.off(&whole).iter().any(|off| !off.is_bounded());
+            if overflows || is_blurred == [true; 3] || has_no_order && !self.line.is_exact() {
                 return Found { undecided: Some(entry), ..nothing };
             }
             if has_no_order {
