@@ -14,7 +14,6 @@ pub struct Command {
     group: Group,
     /// The places in the help of its group, and among all commands in what shells and manuals are told.
     places: [u8; 2],
-    pub(crate) keeps_time: bool,
     action: &'static dyn Action,
     place: &'static Location<'static>,
 }
@@ -111,18 +110,12 @@ impl Command {
         group: Group,
         action: &'static Run<A, E>,
     ) -> Self {
-        Self { name, group, places: [u8::MAX; 2], keeps_time: false, action, place: Location::caller() }
+        Self { name, group, places: [u8::MAX; 2], action, place: Location::caller() }
     }
 
     /// Gives the command its places in the help of its group, and among all commands for shells and manuals.
     pub const fn placed(mut self, in_help: u8, among_all: u8) -> Self {
         self.places = [in_help, among_all];
-        self
-    }
-
-    /// Lets the command end itself at the [time limit](crate::process::time_limit::keep), with what is done.
-    pub const fn keeps_time(mut self) -> Self {
-        self.keeps_time = true;
         self
     }
 

@@ -147,9 +147,7 @@ fn chosen() -> ExitCode {
     let chosen = chosen.map(|(name, matches)| {
         (Command::named(name).expect("clap knows the registered commands alone"), matches)
     });
-    if !chosen.is_some_and(|(command, _)| command.keeps_time)
-        && let Err(failure) = time_limit::watch()
-    {
+    if let Err(failure) = time_limit::watch() {
         return report(&failure);
     }
     match chosen {

@@ -83,7 +83,7 @@ Examples:
   tabray render ball.ray -o big.png --part 1/4             # then 2/4 to 4/4, and `merge`";
 
 inventory::submit! {
-    Command::new("render", Group::First, &Run(run)).placed(3, 0).keeps_time()
+    Command::new("render", Group::First, &Run(run)).placed(3, 0)
 }
 
 fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {

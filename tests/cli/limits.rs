@@ -334,7 +334,7 @@ fn every_command_that_reads_a_scene_keeps_to_the_limit_on_memory() {
     }
 }
 
-/// What is not done by then is not shown; a render, a chart and a choice say for themselves what they have.
+/// What is not done by then is not shown. Once they have begun, a render, a chart and a choice say what they have.
 #[test]
 fn every_command_that_reads_a_scene_keeps_to_the_limit_on_time() {
     let folder = folder();
@@ -352,6 +352,8 @@ fn every_command_that_reads_a_scene_keeps_to_the_limit_on_time() {
         "hits balls.ray rays.txt",
         "hard balls.ray",
         "bench balls.ray",
+        "chart balls.ray -o x.svg",
+        "choose balls.ray --max-error 2",
         "convert balls.ray x.toml",
         "render balls.ray -o x.png",
         "farm commands balls.ray -o x.png --parts 2",

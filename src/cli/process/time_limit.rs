@@ -20,7 +20,7 @@ pub fn set(limit: Duration) {
 
 /// Ends the program at the limit, if there is one, unless [`keep`] is called before.
 pub fn watch() -> Result<(), Failure> {
-    let Some(limit) = LIMIT.get().copied() else { return Ok(()) };
+    let Some(limit) = given() else { return Ok(()) };
     let end = move || {
         thread::sleep(limit);
         if !IS_KEPT.load(Ordering::Relaxed) {
@@ -35,10 +35,15 @@ pub fn watch() -> Result<(), Failure> {
     })
 }
 
+/// Returns the limit, if there is one.
+pub fn given() -> Option<Duration> {
+    LIMIT.get().copied()
+}
+
 /// Returns the limit, if there is one, to a command that ends itself then.
 pub fn keep() -> Option<Duration> {
     IS_KEPT.store(true, Ordering::Relaxed);
-    LIMIT.get().copied()
+    given()
 }
 
 fn report(limit: Duration) {

@@ -51,11 +51,11 @@ const LIMIT: Duration = Duration::from_secs(120);
 const NOTHING: &str = "nothing has been measured yet";
 
 inventory::submit! {
-    Command::new("chart", Group::Measuring, &Run(run)).placed(1, 15).keeps_time()
+    Command::new("chart", Group::Measuring, &Run(run)).placed(1, 15)
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let limit = Limit::new(time_limit::keep(), LIMIT);
+    let limit = Limit::new(time_limit::given(), LIMIT);
     let (mut work, start) = (Work::within(limit), Instant::now());
     let source = args.scene.read()?;
     let model = input::print_warnings(source.load(registry, None))?.model;
@@ -67,6 +67,8 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let files = files(&args.output, &name, |path| output::refuse_source(path, &args.scene.path, &model))?;
     let unchecked = unchecked::of(&Plan::new(&model));
     drop(model);
+    // Until here, what takes too long has nothing to keep.
+    time_limit::keep();
     interrupt::catch(InterruptAction::SetFlagThenExit(NOTHING))?;
     let (kept, units) = (work.panels(), work.units());
     let end = |chart: Chart| {

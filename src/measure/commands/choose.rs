@@ -78,11 +78,11 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 inventory::submit! {
-    Command::new("choose", Group::First, &Run(run)).placed(6, 16).keeps_time()
+    Command::new("choose", Group::First, &Run(run)).placed(6, 16)
 }
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let limit = Limit::new(time_limit::keep(), LIMIT);
+    let limit = Limit::new(time_limit::given(), LIMIT);
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();
     let source = args.scene.read()?;
@@ -94,6 +94,8 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     drop(plan);
     drop(model);
     let load = all_accuracies(registry, &source)?;
+    // Until here, what takes too long has nothing to keep.
+    time_limit::keep();
     interrupt::catch(InterruptAction::Exit("nothing has been chosen"))?;
     let (worst, is_certain) = (args.worst, args.certain);
     // Either the error or the time is given.
