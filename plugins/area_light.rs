@@ -98,12 +98,8 @@ impl Light for AreaLight {
         self.panel.middle
     }
 
-    fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
-        Some(self.radiance)
-    }
-
-    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        Some(constants(self.radiance))
+    fn sent<N: Number>(&self, _toward: [N; 3]) -> [N; 3] {
+        constants(self.radiance)
     }
 
     /// It covers at most half of all directions, which are 2 pi.

@@ -46,8 +46,8 @@ impl Light for PointLight {
     }
 
     #[inline]
-    fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
-        Some(self.emissivity)
+    fn sent<N: Number>(&self, _toward: [N; 3]) -> [N; 3] {
+        constants(self.emissivity)
     }
 
     fn uniform(&self) -> Option<Rgb> {

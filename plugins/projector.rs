@@ -47,30 +47,11 @@ impl<A: AccuracyTag> Light for Projector<A> {
     /// Light reaches a point only if the path from the light passes through the rectangle, and takes on the image's
     /// colour there.
     #[inline]
-    fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
-        let ray = Ray { origin: toward, dir: (self.light.location - toward).normalize() };
-        let distance = self.window.crossing(&ray)?;
-        Some(self.light.emissivity * self.picture.colour(ray.at(distance)))
-    }
-
-    fn enclose<F: Precise>(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        let n = Interval::<F>::constant;
-        let zero = n(0.0);
-        let minus = |one: [Interval<F>; 3], other: DVec3| per_axis(|axis| one[axis] - n(other[axis]));
-        let from = minus(toward, self.light.location);
-        let away = per_axis(|axis| -from[axis]);
-        let normal = self.window.plane.given_normal::<Interval<F>>();
-        let slope = dot(normal, away);
-        let crossing = -dot(normal, minus(toward, self.window.plane.point)) / slope;
-        let at = per_axis(|axis| toward[axis] + crossing * away[axis]);
-        // Below 0 where the path does not pass through the rectangle.
-        let inside = crossing.min(self.window.inside_of(at));
-        if inside.high < zero.low || slope.is_zero() {
-            return Some([zero; 3]);
-        }
-        let texel = self.picture.enclose(at);
-        let sent = per_axis(|channel| n(self.light.emissivity[channel]) * texel[channel]);
-        Some(if inside.low > zero.low { sent } else { per_axis(|channel| sent[channel].hull(zero)) })
+    fn sent<N: Number>(&self, toward: [N; 3]) -> [N; 3] {
+        let nothing = [N::constant(0.0); 3];
+        let Some((at, inside)) = self.window.passed(toward, self.light.location) else { return nothing };
+        let (sent, texel) = (self.light.sent(toward), self.picture.colour(at));
+        (-inside).either(nothing, per_axis(|channel| sent[channel] * texel[channel]))
     }
 
     /// The lines through the light and the rectangle are a pyramid on either side of the light. The region is clear if

@@ -5,7 +5,10 @@ use tabray::prelude::*;
 
 static POINT: Pparm<DVec3> =
     Pparm::required("point", "a point on the axis of the beam").unit("world coordinates").not_dumped();
-static DIRECTION: Derived = Derived(|args| axis(args).to_datum().line("direction", " \n"));
+static DIRECTION: Derived = Derived(|args| {
+    let axis: [f64; 3] = axis(args.get(&POINT), PointLight::new(args).location);
+    axis.to_datum().line("direction", " \n")
+});
 static THETA: Pparm<f64> = Pparm::required("theta", "the angle between the axis and the edge of the beam")
     .unit("degrees")
     .must("above 0 and at most 180", |theta| *theta > 0.0 && *theta <= 180.0)
@@ -15,7 +18,9 @@ const TABLE: Table = &[&POINT, &DIRECTION, &THETA];
 
 inventory::submit! {
     Entity::light("spotlight", "a light that shines in a cone", &[light::TABLE, TABLE], |args| {
-        if !axis(args).is_finite() {
+        let (light, point) = (PointLight::new(args), args.get(&POINT));
+        let axis = Known::each(axis(point, light.location), axis(point, light.location));
+        if !axis.iter().all(|along| along.rounded.is_finite()) {
             return Err(Refusal {
                 attribute: Some("point"),
                 message: "has its `point` at its `location`".to_owned(),
@@ -23,27 +28,23 @@ inventory::submit! {
             });
         }
         let edge = args.get(&THETA) * std::f64::consts::PI / 180.0;
-        let cosine = (Wide::constant(args.get(&THETA)) * Wide::pi() / Wide::constant(180.0)).cos();
-        let (light, point) = (PointLight::new(args), args.get(&POINT));
-        Ok(Box::new(Spotlight { light, axis: axis(args), cos_edge: libm::cos(edge), point, cosine }))
+        let enclosed = (Wide::constant(args.get(&THETA)) * Wide::pi() / Wide::constant(180.0)).cos().into();
+        Ok(Box::new(Spotlight { light, axis, cos_edge: Known { rounded: libm::cos(edge), enclosed } }))
     })
     .dumped_as("light")
     .known_as(&["spot_light", "spot"])
 }
 
 /// Returns the unit vector along the axis of the beam; NaN where `point` is the light's location.
-fn axis(args: &Attributes) -> DVec3 {
-    (args.get(&POINT) - PointLight::new(args).location).normalize()
+fn axis<N: Number>(point: DVec3, location: DVec3) -> [N; 3] {
+    unit(per_axis(|axis| N::constant(point[axis]) - N::constant(location[axis])))
 }
 
 struct Spotlight {
     light: PointLight,
-    axis: DVec3,
-    cos_edge: f64,
-    /// The point on the axis.
-    point: DVec3,
-    /// Encloses the cosine of the angle between the axis and the edge.
-    cosine: Wide,
+    axis: [Known; 3],
+    /// The cosine of the angle between the axis and the edge.
+    cos_edge: Known,
 }
 
 impl Light for Spotlight {
@@ -53,24 +54,11 @@ impl Light for Spotlight {
     }
 
     #[inline]
-    fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
-        let cos = (toward - self.light.location).normalize().dot(self.axis);
-        (cos > self.cos_edge).then_some(self.light.emissivity)
-    }
-
-    fn enclose<F: Precise>(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        let n = Interval::<F>::constant;
-        let location = constants(self.light.location);
-        let from = |at: [Interval<F>; 3]| per_axis(|axis| at[axis] - location[axis]);
-        let (axis, away) = (from(constants(self.point)), from(toward));
-        let inside =
-            dot(away, axis) - F::narrow(self.cosine.into()) * (dot(away, away) * dot(axis, axis)).sqrt();
-        let (sent, nothing) = (constants::<Interval<F>>(self.light.emissivity), [n(0.0); 3]);
-        Some(match inside.has_zero() {
-            true => per_axis(|channel| sent[channel].hull(nothing[channel])),
-            false if inside.low > nothing[0].low => sent,
-            false => nothing,
-        })
+    fn sent<N: Number>(&self, toward: [N; 3]) -> [N; 3] {
+        let location = self.light.location;
+        let away = unit(per_axis(|axis| toward[axis] - N::constant(location[axis])));
+        let outside = N::known(&self.cos_edge) - dot(away, Known::vector(&self.axis));
+        outside.either([N::constant(0.0); 3], self.light.sent(toward))
     }
 
     /// The region is clear if the sphere around its corners is clear of the cone: if its centre lies off the axis by
@@ -81,9 +69,11 @@ impl Light for Spotlight {
         if !(radius < distance && distance.is_finite()) {
             return false;
         }
-        let off = libm::acos((between.dot(self.axis) / distance).clamp(-1.0, 1.0));
+        let off = libm::acos(
+            (between.dot(DVec3::from(self.axis.map(|along| along.rounded))) / distance).clamp(-1.0, 1.0),
+        );
         // The slack is far above the rounding errors of these angles, which are the largest around 0 and 180 degrees.
-        off > libm::acos(self.cos_edge.clamp(-1.0, 1.0)) + libm::asin(radius / distance) + 1e-6
+        off > libm::acos(self.cos_edge.rounded.clamp(-1.0, 1.0)) + libm::asin(radius / distance) + 1e-6
     }
 
     fn brightest(&self) -> Option<Rgb> {

@@ -54,12 +54,8 @@ impl Light for Sun {
         true
     }
 
-    fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
-        Some(self.emissivity)
-    }
-
-    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        Some(constants(self.emissivity))
+    fn sent<N: Number>(&self, _toward: [N; 3]) -> [N; 3] {
+        constants(self.emissivity)
     }
 
     fn brightest(&self) -> Option<Rgb> {

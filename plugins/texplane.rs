@@ -2,8 +2,9 @@
 
 use super::{fplane, plane};
 use std::sync::Arc;
+use tabray::exact::interval::Fine;
 use tabray::prelude::*;
-use tabray::shapes::rectangle::{Rectangle, along_sides};
+use tabray::shapes::rectangle::{Rectangle, known_sides};
 
 static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture, defined earlier in the scene");
 static MODE: Pparm<i64> = Pparm::required(
@@ -32,19 +33,10 @@ inventory::submit! {
 /// An image on a rectangle.
 pub struct Picture {
     rectangle: Rectangle,
+    sides: [[Known; 3]; 2],
     pub texture: Arc<Texture>,
     /// The width and height of a texel in world units where the image is tiled; `None` where it is stretched to fit.
-    texel: Option<DVec2>,
-    /// The numbers of the scene that these follow from: the normal and `xdir`, of any length, and the image plane's size
-    /// in world units and in pixels.
-    inputs: PictureInputs,
-}
-
-struct PictureInputs {
-    normal: DVec3,
-    xdir: DVec3,
-    screen: DVec2,
-    pixels: DVec2,
+    texel: Option<[Known; 2]>,
 }
 
 impl Picture {
@@ -69,17 +61,24 @@ impl Picture {
             }
             None => DVec2::ONE,
         };
-        let texel = is_tiled.then_some(screen / pixels);
-        let inputs =
-            PictureInputs { normal: args.get(&plane::NORMAL), xdir: args.get(&fplane::XDIR), screen, pixels };
-        Ok(Self { rectangle, texture: args.get(&TEXNAME), texel, inputs })
+        let n = Fine::constant;
+        let texel = [0, 1].map(|side| Known {
+            rounded: screen[side] / pixels[side],
+            enclosed: n(screen[side]) / n(pixels[side]),
+        });
+        let sides = known_sides(args.get(&plane::NORMAL), args.get(&fplane::XDIR), rectangle.sides);
+        Ok(Self { rectangle, sides, texture: args.get(&TEXNAME), texel: is_tiled.then_some(texel) })
     }
 
     /// Returns the texel at a point of the rectangle.
-    #[inline]
-    pub fn colour(&self, at: DVec3) -> Rgb {
-        let [column, row] = self.texel(at);
-        self.texture.texel(column, row)
+    #[inline(always)]
+    pub fn colour<N: Number>(&self, at: [N; 3]) -> [N; 3] {
+        let size = self.texture.size();
+        let texel = |place: [f64; 2]| {
+            let [column, row] = self.wrapped(place, size);
+            self.texture.texel(column, row)
+        };
+        N::table(self.place(at, size), || self.texture.brightest(), texel)
     }
 
     /// Returns the opacity of the texel at a point of the rectangle.
@@ -89,50 +88,47 @@ impl Picture {
     }
 
     /// Returns the column and the row of the texel at a point of the rectangle.
-    #[inline]
-    pub fn texel(&self, at: DVec3) -> [u32; 2] {
-        let across = self.rectangle.coordinates(at);
+    fn texel(&self, at: DVec3) -> [u32; 2] {
         let size = self.texture.size();
-        let texel = |side: usize| match self.texel {
-            None => (across[side] / self.rectangle.dimensions[side] * f64::from(size[side])) as u32,
-            Some(texel) => (across[side] / texel[side]) as u32 % size[side].max(1),
-        };
-        [texel(0), texel(1)]
+        self.wrapped(self.place(at.to_array(), size), size)
     }
 
-    /// Encloses the texels at the points of a box in the rectangle's plane.
-    pub fn enclose<F: Precise>(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
-        let PictureInputs { normal, xdir, screen, pixels } = self.inputs;
-        let (corner, n) = (self.rectangle.corner, Interval::<F>::constant);
-        let [normal, xdir] = [constants(normal), constants(xdir)];
-        let across = along_sides(normal, xdir, per_axis(|axis| at[axis] - n(corner[axis])));
-        let size = self.texture.size();
-        let range = |side: usize| {
-            let texels = match self.texel {
-                None => across[side] / n(self.rectangle.dimensions[side]) * n(f64::from(size[side])),
-                Some(_) => across[side] * n(pixels[side]) / n(screen[side]),
-            };
-            let Interval { low, high } = texels.coarse();
-            // Infinite ends become the least and the greatest number.
-            let exact = texels.certain_floor().map(|at| at as u32..=at as u32);
-            let size = if self.texel.is_some() { size[side].max(1) } else { u32::MAX };
-            exact.unwrap_or(low as u32..=high as u32).map(move |at| at % size)
+    /// Returns where a point of the rectangle lies among the texels, each of width 1.
+    #[inline(always)]
+    fn place<N: Number>(&self, at: [N; 3], size: [u32; 2]) -> [N; 2] {
+        let (from, n) = (per_axis(|axis| at[axis] - N::constant(self.rectangle.corner[axis])), N::constant);
+        let along = |side: usize| {
+            let across = dot(Known::vector(&self.sides[side]), from);
+            match &self.texel {
+                None => across / n(self.rectangle.dimensions[side]) * n(size[side].into()),
+                Some(texel) => across / N::known(&texel[side]),
+            }
         };
-        self.texture.enclose(range(0), range(1))
+        [along(0), along(1)]
+    }
+
+    /// Returns the column or the row of the texture at such a place.
+    #[inline(always)]
+    fn wrapped(&self, place: [f64; 2], size: [u32; 2]) -> [u32; 2] {
+        let texel = |side: usize| match self.texel {
+            None => place[side] as u32,
+            Some(_) => place[side] as u32 % size[side].max(1),
+        };
+        [texel(0), texel(1)]
     }
 }
 
 struct Textured(Picture);
 
 impl Shader for Textured {
-    #[inline]
+    #[inline(always)]
     fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.ambient * self.0.colour(at.position)
+        material.ambient * Rgb::from(self.0.colour(at.position.to_array()))
     }
 
-    #[inline]
+    #[inline(always)]
     fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.diffuse * self.0.colour(at.position)
+        material.diffuse * Rgb::from(self.0.colour(at.position.to_array()))
     }
 
     fn cuts_out(&self) -> bool {
@@ -158,7 +154,7 @@ impl Shader for Textured {
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let (look, texel) = (LookBounds::from(material), self.0.enclose(at.position));
+        let (look, texel) = (LookBounds::from(material), self.0.colour(at.position));
         let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * texel[channel]);
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }

@@ -26,6 +26,7 @@ pub use tabray_world::interface::{AnyInterface, Crossing, Interface, Law, Medium
 pub use tabray_world::light::Light;
 pub use tabray_world::luminous::Luminous;
 pub use tabray_world::material::{Look, Material, Rgb};
+pub use tabray_world::number::{Known, Number};
 pub use tabray_world::panel::Panel;
 pub use tabray_world::patch::{Patch, PatchBounds, between, is_odd, odd_part, odd_part_bounds};
 pub use tabray_world::pinhole::Pinhole;
@@ -50,7 +51,7 @@ pub use tabray_world::scene::profile::{Profile, ProfileLine};
 pub use tabray_exact::double_double::DoubleDouble;
 pub use tabray_exact::dual::Dual;
 pub use tabray_exact::interval::{Float, Interval, Wide};
-pub use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
+pub use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis, unit};
 pub use tabray_shapes::Made;
 pub use tabray_shapes::implicit::Implicit;
 pub use tabray_shapes::parametric::Parametric;

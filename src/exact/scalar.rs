@@ -212,8 +212,16 @@ pub fn constants<N: Scalar>(of: DVec3) -> [N; 3] {
 }
 
 /// Returns the dot product of two vectors.
+#[inline]
 pub fn dot<N: Scalar>(a: [N; 3], b: [N; 3]) -> N {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Returns the unit vector along a vector.
+#[inline]
+pub fn unit<N: Scalar>(vector: [N; 3]) -> [N; 3] {
+    let inverse = N::constant(1.0) / dot(vector, vector).sqrt();
+    per_axis(|axis| vector[axis] * inverse)
 }
 
 /// Returns the cross product of two vectors.

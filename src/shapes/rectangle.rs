@@ -4,10 +4,12 @@ use crate::plane::Plane;
 use glam::{DMat3, DVec2, DVec3};
 use tabray_exact::double_double::vectors::{cross, product, unit};
 use tabray_exact::double_double::{DoubleDouble, power_of_two, scaled};
+use tabray_exact::interval::Fine;
 use tabray_exact::scalar::{self, Scalar, constants, dot, per_axis};
 use tabray_world::accuracy::AccuracyTag;
 use tabray_world::geometry::aabb::{Aabb, larger, smaller};
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange};
+use tabray_world::number::{Known, Number, plain};
 
 /// The position and the size of a rectangle.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +60,16 @@ pub fn along_sides<N: Scalar>(normal: [N; 3], xdir: [N; 3], vector: [N; 3]) -> [
     let first = per_axis(|axis| square * xdir[axis] - across * normal[axis]);
     let along = |side: [N; 3]| dot(side, vector) / dot(side, side).sqrt();
     [along(first), along(scalar::cross(normal, xdir))]
+}
+
+/// Returns the directions of the sides of such a rectangle, which are rounded to these.
+pub fn known_sides(normal: DVec3, xdir: DVec3, rounded: [DVec3; 2]) -> [[Known; 3]; 2] {
+    let (normal, xdir): ([Fine; 3], _) = (constants(normal), constants(xdir));
+    let (square, across) = (dot(normal, normal), dot(normal, xdir));
+    let first = per_axis(|axis| square * xdir[axis] - across * normal[axis]);
+    let unit = |side: [Fine; 3]| side.map(|along| along / dot(side, side).sqrt());
+    let sides = [unit(first), unit(scalar::cross(normal, xdir))];
+    [0, 1].map(|side| Known::each(rounded[side].to_array(), sides[side]))
 }
 
 impl<A> FinitePlane<A> {
@@ -129,6 +141,23 @@ impl<A: AccuracyTag> FinitePlane<A> {
     pub fn crossing(&self, ray: &Ray) -> Option<f64> {
         let distance = self.plane.crossing(ray);
         (distance > 0.0 && self.has_crossing(ray, distance)).then_some(distance)
+    }
+
+    /// Returns where the line from a point to a light passes through the rectangle, and a number above 0 if it does; `None`
+    /// if it certainly does not.
+    #[inline(always)]
+    pub fn passed<N: Number>(&self, from: [N; 3], light: DVec3) -> Option<([N; 3], N)> {
+        let n = N::constant;
+        if let Some(origin) = plain(from) {
+            let ray = Ray { origin, dir: (light - origin).normalize() };
+            return Some((constants(ray.at(self.crossing(&ray)?)), n(1.0)));
+        }
+        let (away, normal) = (per_axis(|axis| n(light[axis]) - from[axis]), self.plane.given_normal());
+        let (height, slope) = (per_axis(|axis| n(self.plane.point[axis]) - from[axis]), dot(normal, away));
+        let crossing = dot(normal, height) / slope;
+        let at = per_axis(|axis| from[axis] + crossing * away[axis]);
+        let inside = crossing.min(self.inside_of(at));
+        (inside.bounds()[1] >= 0.0 && !slope.is_zero()).then_some((at, inside))
     }
 
     /// Returns whether the rectangle, including its sides, contains the point where a ray crosses its plane.

@@ -35,6 +35,7 @@ pub mod light;
 pub mod luminous;
 pub mod material;
 pub mod memory;
+pub mod number;
 pub mod packets;
 pub mod panel;
 pub mod parallel;

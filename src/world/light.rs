@@ -1,45 +1,37 @@
 //! Lights: the trait that a plugin implements.
 
 use crate::any_shape::AnyShape;
-use crate::certify::Precise;
 use crate::emitter::Emitter;
 use crate::geometry::aabb::Aabb;
 use crate::material::Rgb;
+use crate::number::Number;
 use glam::DVec3;
-use tabray_exact::interval::Interval;
-use tabray_exact::scalar::constants;
 
 /// A source of light: a point, a ball with a [`size`](Self::size), or what an [`emitter`](Self::emitter) describes.
 pub trait Light: Send + Sync {
     /// Returns the light's position, in world coordinates: its point, or its middle.
     fn location(&self) -> DVec3;
 
-    /// Returns the light sent toward a point, or `None` where the light does not point there (the notes' `vischeck`).
-    fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
+    /// Returns the light sent toward a point, 0 where the light does not point there (the notes' `vischeck`). Pictures
+    /// ask in plain numbers, and proofs of colours in numbers that enclose all points of a box.
+    fn sent<N: Number>(&self, toward: [N; 3]) -> [N; 3]
+    where
+        Self: Sized;
 
-    /// Returns the light sent toward every point, if [`emissivity`](Self::emissivity) is `Some` and the same
-    /// everywhere. Then `emissivity` is not called for each point. `None` is always correct.
+    /// Returns the light sent toward every point, if it is the same everywhere. Then [`sent`](Self::sent) is not called
+    /// for each point. `None` is always correct.
     fn uniform(&self) -> Option<Rgb> {
         None
     }
 
-    /// Encloses the light sent toward every point of a box, before any rounding, 0 where the light does not point
-    /// there; `None` where it is not known. Proofs of colours ask for it. `None` is always correct.
-    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>
-    where
-        Self: Sized,
-    {
-        self.uniform().map(constants)
-    }
-
-    /// Returns the largest magnitude of each channel of [`emissivity`](Self::emissivity) over all points, with either
-    /// sign, or `None` where it is not known. `None` is always correct.
+    /// Returns the largest magnitude of each channel of what is [`sent`](Self::sent) toward all points, with either sign,
+    /// or `None` where it is not known. `None` is always correct.
     fn brightest(&self) -> Option<Rgb> {
         self.uniform()
     }
 
-    /// Tells whether the light shines on no point of a region, which may be unbounded: [`emissivity`](Self::emissivity)
-    /// is `None` there. A scene in which only such regions are seen leaves the light out. `false` is always correct.
+    /// Tells whether the light shines on no point of a region, which may be unbounded: [`sent`](Self::sent) is
+    /// 0 there. A scene in which only such regions are seen leaves the light out. `false` is always correct.
     fn is_clear_of(&self, _region: &Aabb) -> bool {
         false
     }
@@ -52,9 +44,9 @@ pub trait Light: Send + Sync {
     }
 
     /// Returns how the light is spread out, if it is neither a point nor a ball. Its samples then determine the light
-    /// that it adds, and [`emissivity`](Self::emissivity) is its radiance. [`brightest`](Self::brightest) bounds
-    /// `light` of each sample times the cosine of the angle at which it arrives, or, if the light has highlights,
-    /// without the cosine.
+    /// that it adds, and what is [`sent`](Self::sent) is its radiance. [`brightest`](Self::brightest) bounds `light` of
+    /// each sample times the cosine of the angle at which it arrives, or, if the light has highlights, without the
+    /// cosine.
     fn emitter(&self) -> Option<&dyn Emitter> {
         None
     }
@@ -64,7 +56,7 @@ pub trait Light: Send + Sync {
         false
     }
 
-    /// Returns the visible shape of the light, as bright as its emissivity; `None` for a light that is not visible
+    /// Returns the visible shape of the light, as bright as what is sent; `None` for a light that is not visible
     /// itself.
     fn shape(&self) -> Option<AnyShape> {
         None

@@ -1,8 +1,9 @@
 //! Textures that repeat.
 
 use crate::material::Rgb;
+use crate::number::MAX_TEXELS;
 use crate::patch::MEAN_ROUNDING;
-use crate::texture::{MAX_TEXELS, Texture};
+use crate::texture::Texture;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, constants, per_axis};

@@ -1,16 +1,15 @@
 //! Backgrounds that light surfaces.
 
 use crate::background::Background;
-use crate::certify::Precise;
 use crate::emitter::{Emitter, Extent, LightSample, by_cosine};
 use crate::light::Light;
 use crate::material::Rgb;
+use crate::number::Number;
 use crate::sky_map::SkyMap;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
-use tabray_exact::interval::Interval;
-use tabray_exact::scalar::{Scalar, per_axis};
+use tabray_exact::scalar::per_axis;
 
 /// The light of a background. Directions are chosen by the cosine of the angle at which light arrives. Where the
 /// background has detail, half of them are chosen by its brightness.
@@ -39,13 +38,9 @@ impl Light for SkyLight {
         true
     }
 
-    fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
-        Some(self.background.brightest())
-    }
-
-    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+    fn sent<N: Number>(&self, _toward: [N; 3]) -> [N; 3] {
         let most = self.background.brightest();
-        Some(per_axis(|channel| Interval::constant(0.0).hull(Interval::constant(most[channel]))))
+        per_axis(|channel| N::any(0.0, most[channel]))
     }
 
     /// The density of directions is at least half of the cosine density.

@@ -3,6 +3,7 @@
 use crate::display::Display;
 use crate::image_file;
 use crate::material::Rgb;
+use crate::number::MAX_TEXELS;
 use crate::rules::Rules;
 use crate::sensor::Sensor;
 use crate::sums::Sums;
@@ -17,9 +18,6 @@ use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 /// The default opacity below which a place of an image is cut out.
 pub const CUTOFF: f64 = 0.5;
-
-/// The maximum number of columns or rows whose texels an enclosure examines one by one.
-pub(super) const MAX_TEXELS: usize = 8;
 
 /// An image in a file. It is read once, when it is first needed.
 #[derive(Debug, Default)]

@@ -7,7 +7,7 @@ use std::cell::Cell;
 use tabray::exact::Interval;
 use tabray::exact::affine::Affine;
 use tabray::geometry::Line;
-use tabray::render::enclosed::{EnclosedScene, EnclosingTracer, LightPoints, Limits, Number, SceneBounds};
+use tabray::render::enclosed::{EnclosedScene, Enclosing, EnclosingTracer, LightPoints, Limits, SceneBounds};
 use tabray::render::plan::Plan;
 use tabray::render::plan::depth::FAINT;
 use tabray::render::trace;
@@ -91,7 +91,7 @@ fn scene() -> impl Strategy<Value = String> {
 }
 
 /// Encloses the colour that a ray returns; `None` where more than roundings are open.
-fn enclosed<N: Number<End = f64>>(plan: &Plan, line: &Line<N>) -> Option<[Interval; 3]> {
+fn enclosed<N: Enclosing<End = f64>>(plan: &Plan, line: &Line<N>) -> Option<[Interval; 3]> {
     let (bounds, lights) = (SceneBounds::of(plan.model), &plan.needs.lights);
     let (depth, meets_uncertified) = (plan.depth.as_ref(), Cell::new(false));
     let scene = EnclosedScene {

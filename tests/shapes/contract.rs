@@ -6,12 +6,13 @@ use glam::DVec3;
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::exact::Scalar;
+use tabray::exact::scalar::{Scalar, unit};
 use tabray::geometry::{Aabb, Bracket, Frame, ImagePoint, MISS, Ray, RayBall, RayRange, Side};
 use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
 use tabray::shapes::{Implicit, Made};
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
+use tabray::world::number::Number;
 use tabray::world::{
     AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Facts, Hittable, Interface,
     Light, Material, Origins, Projected, Rgb, Shader, Shape, Sides, SurfacePoint,
@@ -283,8 +284,8 @@ impl Light for Lamp {
         DVec3::ONE
     }
 
-    fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
-        Some(Rgb::ONE + (toward - DVec3::ONE).normalize())
+    fn sent<N: Number>(&self, toward: [N; 3]) -> [N; 3] {
+        unit(toward.map(|along| along - N::constant(1.0))).map(|along| N::constant(1.0) + along)
     }
 }
 

@@ -17,7 +17,7 @@ use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::any_shape::AnyShape;
 use tabray_core::world::body::{AnyShader, Body, Warning};
 use tabray_core::world::lamp::Lamp;
-use tabray_core::world::material::Material;
+use tabray_core::world::material::{Material, Rgb};
 use tabray_core::world::rules::{Fading, Falloff, Rules};
 use tabray_core::world::sky_light::SkyLight;
 
@@ -179,7 +179,7 @@ impl Check<'_, '_> {
 /// Returns the visible object of a light, if it has one.
 fn surface(record: &Record, lamp: &Lamp) -> Option<Object> {
     let Body { shape, shader, .. } = Body::plain(lamp.shape()?);
-    let ambient = lamp.emissivity(lamp.location())?;
+    let ambient = Rgb::from(lamp.sends(lamp.location().to_array()));
     let material = Arc::new(Material { ambient, ..Material::default() });
     Some(Object { args: record.clone(), material, shape, shader })
 }

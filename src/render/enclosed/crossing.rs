@@ -1,6 +1,6 @@
 //! How rays continue at interfaces.
 
-use super::number::Number;
+use super::number::Enclosing;
 use super::scene::Colour;
 use super::surface::HitPoints;
 use tabray_exact::scalar::{constants, dot, per_axis};
@@ -15,7 +15,7 @@ pub(super) struct Crossings<N> {
 }
 
 /// Encloses how rays that hit points along unit vectors continue; `None` where that is open.
-pub(super) fn crossings<N: Number>(law: Law, surface: &HitPoints<N>, dir: [N; 3]) -> Option<Crossings<N>> {
+pub(super) fn crossings<N: Enclosing>(law: Law, surface: &HitPoints<N>, dir: [N; 3]) -> Option<Crossings<N>> {
     let (n, one) = (N::constant, N::constant(1.0));
     let cosine = -dot(dir, surface.normal);
     // Bent normals may face away from the rays; the tracer then turns them.

@@ -1,27 +1,20 @@
 //! Directions in numbers that enclose them, as they are chosen in the arithmetic of images.
 
-use super::number::Number;
+use super::number::Enclosing;
 use glam::DVec2;
 use tabray_exact::interval::Interval;
-use tabray_exact::scalar::{dot, per_axis};
 
 /// Encloses the point of the unit disc that two numbers from 0 to 1 choose, as
 /// [`sample::on_disc`](tabray_world::sample::on_disc) does.
-pub(super) fn in_disc<N: Number>(numbers: DVec2) -> [N; 2] {
+pub(super) fn in_disc<N: Enclosing>(numbers: DVec2) -> [N; 2] {
     let n = N::constant;
     let (sin, cos) = (n(2.0) * N::enclosing(Interval::pi()) * n(numbers.y)).sin_cos();
     let radius = n(numbers.x).sqrt();
     [radius * cos, radius * sin]
 }
 
-/// Encloses the unit vectors along vectors.
-pub(super) fn unit<N: Number>(vector: [N; 3]) -> [N; 3] {
-    let length = dot(vector, vector).sqrt();
-    per_axis(|axis| vector[axis] / length)
-}
-
 /// Encloses the two vectors perpendicular to a unit vector that `glam` chooses; `None` where they are open.
-pub(super) fn orthonormal_pair<N: Number>([x, y, z]: [N; 3]) -> Option<[[N; 3]; 2]> {
+pub(super) fn orthonormal_pair<N: Enclosing>([x, y, z]: [N; 3]) -> Option<[[N; 3]; 2]> {
     let (n, side) = (N::constant, z.range());
     let sign = if side.low >= N::of(0.0) {
         n(1.0)

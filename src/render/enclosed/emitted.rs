@@ -1,15 +1,14 @@
 //! The light of extended sources that reaches the points of a surface.
 
-use super::directions::unit;
 use super::light::{LightPoints, power};
-use super::number::{Endpoint, Number, ranges};
+use super::number::Enclosing;
 use super::panes::{Ends, Passes, passed};
 use super::sampled::{self, Points, Round};
 use super::scene::{Colour, EnclosedScene, Path};
 use super::surface::{HitPoints, is_black};
 use glam::DVec2;
 use tabray_exact::interval::{Float, Interval};
-use tabray_exact::scalar::{dot, per_axis};
+use tabray_exact::scalar::{dot, per_axis, unit};
 use tabray_world::emitter::{Emitter, Extent};
 use tabray_world::geometry::sight::Line;
 
@@ -19,7 +18,7 @@ use tabray_world::geometry::sight::Line;
 /// A sample is enclosed by the contribution of its point, and the mean over a panel, a ball or a cone by the
 /// contributions of all points. Where these are open, and for the mean over a sky, the light lies between nothing and
 /// its greatest possible value.
-pub(super) fn contribution<N: Number>(
+pub(super) fn contribution<N: Enclosing>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
     emitter: &dyn Emitter,
@@ -35,8 +34,7 @@ pub(super) fn contribution<N: Number>(
     if !scene.bounds.passes_fractions {
         return None;
     }
-    let sent = N::End::sent(&**light, ranges(surface.at))?;
-    let sent: Colour<N> = per_axis(|channel| N::enclosing(sent[channel]));
+    let sent = N::sent(&**light, surface.at);
     // Without highlights, the mean of all samples is no more than the radiance.
     let most = match (seen, has_highlight) {
         (LightPoints::All, false) => per_axis(|channel| sent[channel].range().coarse().magnitude()),
@@ -80,7 +78,7 @@ pub(super) fn contribution<N: Number>(
 }
 
 /// A light of this index, and the points of a surface on which it shines, seen along `dir`.
-struct Shining<'s, N: Number> {
+struct Shining<'s, N: Enclosing> {
     scene: &'s EnclosedScene<'s>,
     index: usize,
     surface: &'s HitPoints<N>,
@@ -89,7 +87,7 @@ struct Shining<'s, N: Number> {
     shininess: Option<f64>,
 }
 
-impl<N: Number> Shining<'_, N> {
+impl<N: Enclosing> Shining<'_, N> {
     /// Encloses the light that a sample adds, given the two numbers that choose its points; `None` where it is open.
     fn sampled(&self, extent: &Extent, numbers: DVec2, sent: &Colour<N>) -> Option<Colour<N>> {
         match sampled::chosen(extent, self.surface, numbers)? {

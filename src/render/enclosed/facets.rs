@@ -1,12 +1,12 @@
 //! The facet of a rough surface that a sample chooses, with the names of the tracer's own code.
 
-use super::directions::{in_disc, orthonormal_pair, unit};
-use super::number::Number;
+use super::directions::{in_disc, orthonormal_pair};
+use super::number::Enclosing;
 use super::surface::HitPoints;
 use glam::DVec2;
-use tabray_exact::scalar::{cross, dot, per_axis};
+use tabray_exact::scalar::{cross, dot, per_axis, unit};
 
-impl<N: Number> HitPoints<N> {
+impl<N: Enclosing> HitPoints<N> {
     /// Returns the points with the normals of the facets that two numbers from 0 to 1 choose, among the facets that are
     /// seen along these unit vectors; `None` where the normals are open.
     pub fn with_facet(&self, dir: [N; 3], roughness: f64, numbers: DVec2) -> Option<Self> {

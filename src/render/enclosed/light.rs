@@ -1,11 +1,11 @@
 //! The light that reaches the points of a surface.
 
-use super::directions::{in_disc, orthonormal_pair, unit};
-use super::number::{Endpoint, Number, ranges};
+use super::directions::{in_disc, orthonormal_pair};
+use super::number::Enclosing;
 use super::panes::{Ends, passed};
 use super::scene::{Colour, EnclosedScene, Path};
 use super::surface::{HitPoints, is_black};
-use tabray_exact::scalar::{cross, dot, per_axis};
+use tabray_exact::scalar::{cross, dot, per_axis, unit};
 use tabray_world::geometry::sight::Line;
 use tabray_world::packets::light::PacketLight;
 use tabray_world::rules::{Falloff, Rules};
@@ -27,7 +27,7 @@ pub enum LightPoints {
 
 /// Encloses the contribution of the light of this index to the colour of points; `None` where it is open. `dir` is
 /// the unit vector along the rays that see the points.
-pub(super) fn contribution<N: Number>(
+pub(super) fn contribution<N: Enclosing>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
     surface: &HitPoints<N>,
@@ -51,8 +51,7 @@ pub(super) fn contribution<N: Number>(
     if above.high <= zero {
         return Some(black);
     }
-    let sent = N::End::sent(&**light, ranges(surface.at))?;
-    let mut sent = per_axis(|channel| N::enclosing(sent[channel]));
+    let mut sent = N::sent(&**light, surface.at);
     if is_black(&sent) {
         return Some(black);
     }
@@ -79,7 +78,7 @@ pub(super) fn contribution<N: Number>(
 
 /// Encloses the vectors from points to a light: to its location, or to the chosen points of the disc around it that
 /// faces the points. `None` where the vectors are open.
-fn toward<N: Number>(
+fn toward<N: Enclosing>(
     light: &(dyn PacketLight + 'static),
     (index, seen): (usize, LightPoints),
     at: [N; 3],
@@ -101,7 +100,7 @@ fn toward<N: Number>(
 
 /// Encloses the vectors to all points of a disc of this radius that faces its viewers. `toward` leads to the disc's
 /// middle.
-pub fn on_disc<N: Number>(toward: [N; 3], radius: N) -> [N; 3] {
+pub fn on_disc<N: Enclosing>(toward: [N; 3], radius: N) -> [N; 3] {
     let magnitude = |axis: &usize| toward[*axis].coarse().middle().abs();
     let farthest = (0..3).min_by(|one, other| magnitude(one).total_cmp(&magnitude(other)));
     let axis = per_axis(|axis| N::constant(if Some(axis) == farthest { 1.0 } else { 0.0 }));
@@ -114,7 +113,7 @@ pub fn on_disc<N: Number>(toward: [N; 3], radius: N) -> [N; 3] {
 }
 
 /// Encloses the power of a cosine above 0; 0 below.
-pub(super) fn power<N: Number>(cosine: N, shininess: f64) -> N {
+pub(super) fn power<N: Enclosing>(cosine: N, shininess: f64) -> N {
     let n = N::constant;
     let cosine = cosine.max(n(0.0)).min(n(1.0));
     let whole = shininess as i32;

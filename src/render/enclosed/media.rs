@@ -1,14 +1,14 @@
 //! The absorption of light in media, as in the tracer. The medium of a path belongs to the object that the lines
 //! leave on its inside, or otherwise to the object that they hit on its inside.
 
-use super::number::Number;
+use super::number::Enclosing;
 use super::scene::{Colour, EnclosedScene, Path};
 use tabray_exact::scalar::per_axis;
 use tabray_world::interface::Medium;
 
 /// Returns the medium that absorbs light between the start of lines and their hit. `met` is the object hit, if any,
 /// and whether it is hit on its inside.
-pub(super) fn between<N: Number>(
+pub(super) fn between<N: Enclosing>(
     scene: &EnclosedScene,
     path: &Path<N>,
     met: Option<(usize, bool)>,
@@ -21,7 +21,7 @@ pub(super) fn between<N: Number>(
 }
 
 /// Encloses the fractions of light that pass through a medium over a length in world units; `None` is endless.
-pub(super) fn passed<N: Number>(medium: &Medium, length: Option<N>) -> Colour<N> {
+pub(super) fn passed<N: Enclosing>(medium: &Medium, length: Option<N>) -> Colour<N> {
     let (zero, one) = (N::constant(0.0), N::constant(1.0));
     let left = medium.left();
     per_axis(|channel| match length {

@@ -26,6 +26,6 @@ mod surface;
 mod tangents;
 
 pub use light::LightPoints;
-pub use number::{Endpoint, Number};
+pub use number::{Enclosing, Endpoint};
 pub use rays::{EnclosingTracer, Limits};
 pub use scene::{Colour, EnclosedScene, SceneBounds};

@@ -2,12 +2,13 @@
 
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::{Float, Interval};
-use tabray_exact::scalar::{Scalar, per_axis};
+use tabray_exact::scalar::per_axis;
 use tabray_world::certify::{
     FootprintHit, HitEnclosure, Precise, ProofMethods, gradient, gradient_over, shading_normals,
 };
 use tabray_world::geometry::sight::Line;
-use tabray_world::packets::light::{EncloseLight, PacketLight};
+use tabray_world::number::Number;
+use tabray_world::packets::light::{PacketLight, Sends};
 use tabray_world::scene::model::Object;
 use tabray_world::shader::{EncloseLook, EnclosedShader, LookBounds};
 use tabray_world::surface_point::PointBounds;
@@ -17,7 +18,7 @@ const MAX_EDGES: usize = 4;
 
 /// What is proven about a hit of lines.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Hit<N: Number> {
+pub enum Hit<N: Enclosing> {
     /// Each line has a hit at this t.
     Certain(N),
     /// A line may have a hit, and if it has one, at this t.
@@ -26,7 +27,7 @@ pub enum Hit<N: Number> {
     Doubtful(N::End),
 }
 
-impl<N: Number> Hit<N> {
+impl<N: Enclosing> Hit<N> {
     /// Returns a lower bound on t.
     pub fn low(&self) -> N::End {
         match self {
@@ -36,7 +37,7 @@ impl<N: Number> Hit<N> {
     }
 }
 
-/// A precision in which shaders and lights are enclosed.
+/// A precision in which shaders are enclosed.
 pub trait Endpoint: Precise {
     /// Encloses the look of an object at a point.
     fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>>;
@@ -52,13 +53,13 @@ pub trait Endpoint: Precise {
     ) -> Option<[Interval<Self>; 3]>;
 
     /// Encloses what a light sends toward a point.
-    fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<[Interval<Self>; 3]>;
+    fn sent(light: &dyn PacketLight, toward: [Interval<Self>; 3]) -> [Interval<Self>; 3];
 }
 
 impl<F: Precise> Endpoint for F
 where
     dyn EnclosedShader: EncloseLook<F>,
-    dyn PacketLight: EncloseLight<F>,
+    for<'l> dyn PacketLight + 'l: Sends<Interval<F>>,
 {
     fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>> {
         let mut shader: &(dyn EnclosedShader + 'static) = &*object.shader;
@@ -85,13 +86,13 @@ where
         EncloseLook::<F>::bent(shader, at, normal)
     }
 
-    fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<[Interval<Self>; 3]> {
-        EncloseLight::<F>::sent(light, toward)
+    fn sent(light: &dyn PacketLight, toward: [Interval<Self>; 3]) -> [Interval<Self>; 3] {
+        light.sends(toward)
     }
 }
 
 /// A number that encloses all values of a quantity: at one point, or anywhere in a region.
-pub trait Number: Scalar + PartialEq {
+pub trait Enclosing: Number + PartialEq {
     /// The endpoints of intervals of such numbers.
     type End: Endpoint;
 
@@ -115,16 +116,14 @@ pub trait Number: Scalar + PartialEq {
     /// Tells whether the values are known without any uncertainty, so that equal numbers are the same quantity.
     fn is_exact(self) -> bool;
 
-    /// Returns a number that encloses both quantities.
-    fn hull(self, other: Self) -> Self {
-        if self == other { self } else { Self::enclosing(self.range().hull(other.range())) }
-    }
-
     /// Returns a coordinate, from -1 to 1, of the points of a light with a size: the first or the second one.
     fn on_light(coordinate: usize) -> Self;
 
     /// Returns the mean over the points of a light with a size.
     fn mean_over_light(self) -> Self;
+
+    /// Encloses what a light sends toward points.
+    fn sent(light: &dyn PacketLight, toward: [Self; 3]) -> [Self; 3];
 
     /// Calls `met` with the possible hits with t > 0 of a shape, each with its part of the shape. For each part, these
     /// are the hits up to the first one that every line certainly has. The calls end when `met` returns false. `leaves`
@@ -149,7 +148,7 @@ pub trait Number: Scalar + PartialEq {
     ) -> Option<[Self; 3]>;
 }
 
-impl<F: Endpoint> Number for Interval<F> {
+impl<F: Endpoint> Enclosing for Interval<F> {
     type End = F;
 
     fn range(self) -> Self {
@@ -178,6 +177,10 @@ impl<F: Endpoint> Number for Interval<F> {
 
     fn mean_over_light(self) -> Self {
         self
+    }
+
+    fn sent(light: &dyn PacketLight, toward: [Self; 3]) -> [Self; 3] {
+        F::sent(light, toward)
     }
 
     fn hits(
@@ -228,7 +231,7 @@ impl<F: Endpoint> Number for Interval<F> {
 /// The variables that stand for the point of a light with a size: two coordinates in a disc of radius 1.
 const ON_LIGHT: [usize; 2] = [2, 3];
 
-impl Number for Affine {
+impl Enclosing for Affine {
     type End = f64;
 
     fn range(self) -> Interval {
@@ -257,6 +260,10 @@ impl Number for Affine {
 
     fn mean_over_light(self) -> Self {
         ON_LIGHT.iter().fold(self, |mean, index| mean.without(*index))
+    }
+
+    fn sent(light: &dyn PacketLight, toward: [Self; 3]) -> [Self; 3] {
+        light.sends(toward)
     }
 
     fn hits(
@@ -291,12 +298,12 @@ impl Number for Affine {
 }
 
 /// Returns the intervals of a vector.
-pub(super) fn ranges<N: Number>(vector: [N; 3]) -> [Interval<N::End>; 3] {
+pub(super) fn ranges<N: Enclosing>(vector: [N; 3]) -> [Interval<N::End>; 3] {
     per_axis(|axis| vector[axis].range())
 }
 
 /// Encloses lines, rounded outward.
-pub(super) fn coarse<N: Number>(line: &Line<N>) -> Line<Interval> {
+pub(super) fn coarse<N: Enclosing>(line: &Line<N>) -> Line<Interval> {
     let coarse = |vector: [N; 3]| per_axis(|axis| vector[axis].coarse());
     Line { origin: coarse(line.origin), dir: coarse(line.dir) }
 }

@@ -1,7 +1,7 @@
 //! How much light passes between a point and a lamp.
 
 use super::media;
-use super::number::{Endpoint, Hit, Number, coarse, ranges};
+use super::number::{Enclosing, Endpoint, Hit, coarse, ranges};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::tint;
 use std::ptr;
@@ -25,7 +25,7 @@ pub(super) enum Passes<N> {
     Open,
 }
 
-impl<N: Number> Passes<N> {
+impl<N: Enclosing> Passes<N> {
     /// Encloses the part of a light that reaches points, given the full light. The light comes from above the surface
     /// for those points whose cosines are above 0. `None` where that is open.
     pub fn lit(
@@ -66,7 +66,7 @@ impl<F: Float> Ends<F> {
 }
 
 /// Tells how much of the light of this index passes along lines from t = 0 to where they end on it.
-pub(super) fn passed<N: Number>(
+pub(super) fn passed<N: Enclosing>(
     scene: &EnclosedScene,
     path: &Path<N>,
     light: usize,
@@ -120,7 +120,7 @@ pub(super) fn passed<N: Number>(
 }
 
 /// The panes of glass on lines.
-struct Panes<N: Number> {
+struct Panes<N: Enclosing> {
     /// For each pane, its object and the range of t in which it is or may be.
     at: Vec<(usize, Interval<N::End>)>,
     /// For each stretch in an absorbing medium, its object and its range of t.
@@ -129,7 +129,7 @@ struct Panes<N: Number> {
     passed: Option<Colour<N>>,
 }
 
-impl<N: Number> Panes<N> {
+impl<N: Enclosing> Panes<N> {
     /// Tells whether any pane may be in a range of t.
     fn are_at(&self, t: Interval<N::End>) -> bool {
         self.at.iter().any(|(_, pane)| meet(*pane, t))
@@ -227,7 +227,7 @@ fn meet<F: Float>(one: Interval<F>, other: Interval<F>) -> bool {
 }
 
 /// Tells whether lines along `dir` hit a place on the inside at points; `None` where it is open.
-fn is_inside<N: Number>(scene: &EnclosedScene, place: Place, at: [N; 3], dir: [N; 3]) -> Option<bool> {
+fn is_inside<N: Enclosing>(scene: &EnclosedScene, place: Place, at: [N; 3], dir: [N; 3]) -> Option<bool> {
     let shape = scene.model.objects[place.object].shape.proven()?;
     let along = dot(N::gradient(shape, at, place.part), dir).range();
     let zero = N::of(0.0);
@@ -235,7 +235,7 @@ fn is_inside<N: Number>(scene: &EnclosedScene, place: Place, at: [N; 3], dir: [N
 }
 
 /// Encloses the fraction of light that passes through a place at points; `None` where it is open.
-fn pane_tint<N: Number>(scene: &EnclosedScene, place: Place, at: [N; 3]) -> Option<Colour<N>> {
+fn pane_tint<N: Enclosing>(scene: &EnclosedScene, place: Place, at: [N; 3]) -> Option<Colour<N>> {
     let pane = &scene.model.objects[place.object];
     let seen = PointBounds::seen(pane.shape.proven()?, pane.shader.sees(), place.part, ranges(at), None);
     let tint = match pane.material.transparency {

@@ -4,7 +4,7 @@ use super::crossing::{Crossings, crossings};
 use super::emitted;
 use super::light::{self, LightPoints};
 use super::media;
-use super::number::{Hit, Number};
+use super::number::{Enclosing, Hit};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::{HitPoints, is_black, tint};
 use crate::plan::depth::LightRange;
@@ -96,14 +96,14 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Encloses the colours that primary rays return; `None` where they are open.
-    pub fn primary<N: Number>(&mut self, line: &Line<N>) -> Option<Colour<N>> {
+    pub fn primary<N: Enclosing>(&mut self, line: &Line<N>) -> Option<Colour<N>> {
         let length = dot(line.dir, line.dir).sqrt();
         let path = Path { line: *line, leaves: None, is_inside: false };
         let travelled = N::constant(0.0);
         self.colour(&Ray { path, length, travelled, weight: 1.0, depth: 0, shows_patches: true })
     }
 
-    fn colour<N: Number>(&mut self, ray: &Ray<N>) -> Option<Colour<N>> {
+    fn colour<N: Enclosing>(&mut self, ray: &Ray<N>) -> Option<Colour<N>> {
         let black = [N::constant(0.0); 3];
         let left = match self.rules() {
             Rules::Notes => rules::path_left(ray.travelled).range(),
@@ -159,7 +159,7 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Encloses the colours of rays that hit nothing.
-    fn background<N: Number>(&self, ray: &Ray<N>) -> Colour<N> {
+    fn background<N: Enclosing>(&self, ray: &Ray<N>) -> Colour<N> {
         let Some(background) = &self.scene.model.background else { return [N::constant(0.0); 3] };
         let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
         let seen = background.value.enclose(toward);
@@ -168,7 +168,7 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Encloses the colours of rays that hit a place at t; `None` where the colours are open.
-    fn seen<N: Number>(&mut self, ray: &Ray<N>, t: N, place: Place) -> Option<Colour<N>> {
+    fn seen<N: Enclosing>(&mut self, ray: &Ray<N>, t: N, place: Place) -> Option<Colour<N>> {
         let interface = self.scene.model.objects[place.object].material.interface.as_deref();
         let mut any = None;
         let window = self.scene.window.filter(|_| ray.shows_patches);
@@ -190,7 +190,7 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Encloses the means of what covers a part of the points and of what is behind them.
-    fn covered<N: Number>(
+    fn covered<N: Enclosing>(
         &mut self,
         ray: &Ray<N>,
         t: N,
@@ -204,7 +204,7 @@ impl<'s> EnclosingTracer<'s> {
         Some(per_axis(|channel| rules::transmitted(own[channel], covered, behind[channel], open[channel])))
     }
 
-    fn shaded<N: Number>(&mut self, ray: &Ray<N>, t: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
+    fn shaded<N: Enclosing>(&mut self, ray: &Ray<N>, t: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
         let (dir, travelled) = (ray.path.line.dir, ray.travelled + t * ray.length);
         let mut colour = self.own(ray, travelled, surface)?;
         let object = &self.scene.model.objects[surface.place.object];
@@ -226,7 +226,7 @@ impl<'s> EnclosingTracer<'s> {
 
     /// Encloses the colours of rays that an interface divides. For a rough surface, the facet of one sample is
     /// enclosed, not the mean over all facets.
-    fn divided<N: Number>(
+    fn divided<N: Enclosing>(
         &mut self,
         ray: &Ray<N>,
         t: N,
@@ -282,7 +282,7 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Encloses the light of points themselves, without that of continued rays.
-    fn own<N: Number>(&self, ray: &Ray<N>, travelled: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
+    fn own<N: Enclosing>(&self, ray: &Ray<N>, travelled: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
         let toward = per_axis(|axis| ray.path.line.dir[axis] / ray.length);
         let mut colour = surface.ambient;
         if let Some(most) = self.scene.depth.and_then(|depth| depth.scattered.first()) {
@@ -317,7 +317,7 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Encloses the colours of rays that continue from a surface. Their light is multiplied by `factor`.
-    fn secondary<N: Number>(
+    fn secondary<N: Enclosing>(
         &mut self,
         ray: &Ray<N>,
         surface: &HitPoints<N>,
@@ -336,7 +336,7 @@ impl<'s> EnclosingTracer<'s> {
 
     /// Returns all colours up to a magnitude, where nothing else is known about the rays' colours; `None` where that
     /// is beyond the tolerable.
-    fn open<N: Number>(&mut self, ray: &Ray<N>, most: f64) -> Option<Colour<N>> {
+    fn open<N: Enclosing>(&mut self, ray: &Ray<N>, most: f64) -> Option<Colour<N>> {
         self.is_open = true;
         if self.is_by_chance() {
             return None;
@@ -345,7 +345,7 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Bounds the magnitude of the rays' colours.
-    fn bound<N: Number>(&self, ray: &Ray<N>) -> f64 {
+    fn bound<N: Enclosing>(&self, ray: &Ray<N>) -> f64 {
         let most = match (ray.path.leaves, self.scene.depth) {
             (Some(place), Some(depth)) => depth.beyond(Some(place.object)),
             _ => self.scene.bounds.most,
@@ -354,14 +354,14 @@ impl<'s> EnclosingTracer<'s> {
     }
 
     /// Bounds the magnitude of the colours of rays with this first hit.
-    fn bound_at<N: Number>(&self, ray: &Ray<N>, hit: &Hit<N>, place: Place) -> f64 {
+    fn bound_at<N: Enclosing>(&self, ray: &Ray<N>, hit: &Hit<N>, place: Place) -> f64 {
         let most = self.scene.depth.map_or(self.scene.bounds.most, |depth| depth.objects[place.object].hit);
         self.over_path(ray, Interval::point(hit.low()).coarse().low, most)
     }
 
     /// Bounds the magnitude of light where rays hit nothing before t. `most` is a bound on the light, as
     /// [`Rules::over_path`] takes it.
-    fn over_path<N: Number>(&self, ray: &Ray<N>, t: f64, most: f64) -> f64 {
+    fn over_path<N: Enclosing>(&self, ray: &Ray<N>, t: f64, most: f64) -> f64 {
         if most == 0.0 {
             return self.brightest_background();
         }
@@ -381,21 +381,21 @@ impl<'s> EnclosingTracer<'s> {
 }
 
 /// Encloses colours after a path of this length through a medium, in world units; `None` is endless.
-fn absorbed<N: Number>(colour: Colour<N>, medium: Option<Medium>, length: Option<N>) -> Colour<N> {
+fn absorbed<N: Enclosing>(colour: Colour<N>, medium: Option<Medium>, length: Option<N>) -> Colour<N> {
     let Some(medium) = medium else { return colour };
     let passed = media::passed(&medium, length);
     per_axis(|channel| colour[channel] * passed[channel])
 }
 
 /// Encloses all colours up to a magnitude.
-fn up_to<N: Number>(most: f64) -> Colour<N> {
+fn up_to<N: Enclosing>(most: f64) -> Colour<N> {
     [within(most); 3]
 }
 
-fn within<N: Number>(most: f64) -> N {
+fn within<N: Enclosing>(most: f64) -> N {
     N::enclosing(Interval { low: N::of(-most), high: N::of(most) })
 }
 
-fn hull<N: Number>(one: Colour<N>, other: Colour<N>) -> Colour<N> {
+fn hull<N: Enclosing>(one: Colour<N>, other: Colour<N>) -> Colour<N> {
     per_axis(|channel| one[channel].hull(other[channel]))
 }

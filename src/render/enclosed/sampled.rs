@@ -1,14 +1,14 @@
 //! The points that samples choose on extended lights.
 
-use super::directions::{orthonormal_pair, unit};
+use super::directions::orthonormal_pair;
 use super::light::on_disc;
-use super::number::Number;
+use super::number::Enclosing;
 use super::panes::Ends;
 use super::scene::Colour;
 use super::surface::HitPoints;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
-use tabray_exact::scalar::{constants, cross, dot, per_axis};
+use tabray_exact::scalar::{constants, cross, dot, per_axis, unit};
 use tabray_world::background::Background;
 use tabray_world::ball::Ball;
 use tabray_world::emitter::Extent;
@@ -16,7 +16,7 @@ use tabray_world::panel::Panel;
 use tabray_world::sky_map::SkyMap;
 
 /// Points of a light, as points of a surface see them.
-pub(super) struct Points<N: Number> {
+pub(super) struct Points<N: Enclosing> {
     /// The vectors toward them.
     pub toward: [N; 3],
     /// Whether they are infinitely far away.
@@ -26,7 +26,7 @@ pub(super) struct Points<N: Number> {
     pub light: Colour<N>,
 }
 
-impl<N: Number> Points<N> {
+impl<N: Enclosing> Points<N> {
     fn even(toward: [N; 3], light: N) -> Self {
         Self { toward, are_far: false, light: [light; 3] }
     }
@@ -34,7 +34,7 @@ impl<N: Number> Points<N> {
 
 /// Encloses the points that two numbers from 0 to 1 choose, as points of a surface see them. `None` where they are
 /// open, and `Some(None)` where the sample has no point.
-pub(super) fn chosen<N: Number>(
+pub(super) fn chosen<N: Enclosing>(
     extent: &Extent,
     surface: &HitPoints<N>,
     numbers: DVec2,
@@ -53,7 +53,7 @@ pub(super) fn chosen<N: Number>(
 }
 
 /// Encloses the points of a panel at two coordinates, from -1 to 1, as these points see them.
-pub(super) fn at_place<N: Number>(panel: &Panel, at: [N; 3], place: [N; 2]) -> Points<N> {
+pub(super) fn at_place<N: Enclosing>(panel: &Panel, at: [N; 3], place: [N; 2]) -> Points<N> {
     let (n, [x, y]) = (N::constant, place);
     let Panel { middle, half, .. } = panel;
     let toward = per_axis(|axis| n(middle[axis]) - at[axis] + (x * n(half[0][axis]) + y * n(half[1][axis])));
@@ -64,7 +64,7 @@ pub(super) fn at_place<N: Number>(panel: &Panel, at: [N; 3], place: [N; 2]) -> P
 }
 
 /// Encloses the point of a panel that [`Panel::sample`] chooses for two numbers from 0 to 1.
-fn on_panel<N: Number>(panel: &Panel, at: [N; 3], numbers: DVec2) -> Option<Option<Points<N>>> {
+fn on_panel<N: Enclosing>(panel: &Panel, at: [N; 3], numbers: DVec2) -> Option<Option<Points<N>>> {
     let n = N::constant;
     let between = per_axis(|axis| n(panel.middle[axis]) - at[axis]);
     let distance = dot(between, between).sqrt().coarse();
@@ -93,7 +93,7 @@ fn on_panel<N: Number>(panel: &Panel, at: [N; 3], numbers: DVec2) -> Option<Opti
 
 /// Encloses the vectors to the points of a rectangle that two numbers choose by solid angle, and the solid angle,
 /// with the names of [`Panel::sample`]'s source. `between` leads to its middle.
-fn on_rectangle<N: Number>(between: [N; 3], half: [DVec3; 2], numbers: DVec2) -> Option<([N; 3], N)> {
+fn on_rectangle<N: Enclosing>(between: [N; 3], half: [DVec3; 2], numbers: DVec2) -> Option<([N; 3], N)> {
     let (n, one, zero) = (N::constant, N::constant(1.0), N::of(0.0));
     let half: [[N; 3]; 2] = half.map(constants);
     let [x_axis, y_axis] = half.map(unit);
@@ -147,7 +147,7 @@ fn on_rectangle<N: Number>(between: [N; 3], half: [DVec3; 2], numbers: DVec2) ->
 }
 
 /// A light that looks round: a ball from outside, or a cone of directions.
-pub(super) struct Round<N: Number> {
+pub(super) struct Round<N: Enclosing> {
     /// The vectors to its middle.
     pub middle: [N; 3],
     pub distance: N,
@@ -162,7 +162,7 @@ pub(super) struct Round<N: Number> {
     pub light: [N; 2],
 }
 
-impl<N: Number> Round<N> {
+impl<N: Enclosing> Round<N> {
     /// Returns a light as points see it; `None` where they may not see it round.
     pub fn seen(extent: &Extent, at: [N; 3]) -> Option<Self> {
         let (n, one) = (N::constant, N::constant(1.0));
@@ -200,7 +200,7 @@ impl<N: Number> Round<N> {
 
 /// Encloses the point of a ball that [`Ball::sample`] chooses for two numbers from 0 to 1, as points outside of it
 /// see it.
-fn on_ball<N: Number>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<N>> {
+fn on_ball<N: Enclosing>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<N>> {
     let (half, radius) = (N::constant(0.5), N::constant(ball.radius));
     let Round { middle, distance, light: [_, light], .. } = Round::seen(&Extent::Ball(*ball), at)?;
     let dir = in_cone(per_axis(|axis| middle[axis] / distance), half * light, numbers)?;
@@ -213,7 +213,7 @@ fn on_ball<N: Number>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Points<
 
 /// Encloses the direction that a sample of [`SkyLight`](tabray_world::sky_light::SkyLight) chooses for two numbers
 /// from 0 to 1, and its light.
-fn in_sky<N: Number>(
+fn in_sky<N: Enclosing>(
     (background, map): (&dyn Background, Option<&SkyMap>),
     normal: [N; 3],
     numbers: DVec2,
@@ -248,7 +248,7 @@ fn in_sky<N: Number>(
 
 /// Encloses the unit vector that [`emitter::by_cosine`](tabray_world::emitter::by_cosine) chooses for two numbers
 /// from 0 to 1.
-fn by_cosine<N: Number>(normal: [N; 3], numbers: DVec2) -> Option<[N; 3]> {
+fn by_cosine<N: Enclosing>(normal: [N; 3], numbers: DVec2) -> Option<[N; 3]> {
     let place = in_disc(numbers);
     let [x, y] = place;
     around(normal, place, (N::constant(1.0) - x * x - y * y).sqrt())
@@ -256,7 +256,7 @@ fn by_cosine<N: Number>(normal: [N; 3], numbers: DVec2) -> Option<[N; 3]> {
 
 /// Encloses the unit vector that [`emitter::in_cone`](tabray_world::emitter::in_cone) chooses for two numbers from 0
 /// to 1.
-fn in_cone<N: Number>(axis: [N; 3], height: N, numbers: DVec2) -> Option<[N; 3]> {
+fn in_cone<N: Enclosing>(axis: [N; 3], height: N, numbers: DVec2) -> Option<[N; 3]> {
     let place: [N; 2] = in_disc(numbers);
     let [x, y] = place;
     let drop = height * (x * x + y * y);
@@ -265,7 +265,7 @@ fn in_cone<N: Number>(axis: [N; 3], height: N, numbers: DVec2) -> Option<[N; 3]>
 }
 
 /// Returns the vector with these coordinates across an axis, and along it; `None` where the directions across are open.
-fn around<N: Number>(axis: [N; 3], [x, y]: [N; 2], along: N) -> Option<[N; 3]> {
+fn around<N: Enclosing>(axis: [N; 3], [x, y]: [N; 2], along: N) -> Option<[N; 3]> {
     if x.is_zero() && y.is_zero() {
         return Some(axis.map(|of| along * of));
     }
@@ -274,7 +274,7 @@ fn around<N: Number>(axis: [N; 3], [x, y]: [N; 2], along: N) -> Option<[N; 3]> {
 }
 
 /// Encloses the point of the unit disc to which [`on_disc`](tabray_world::panel::on_disc) maps two numbers from 0 to 1.
-fn in_disc<N: Number>(numbers: DVec2) -> [N; 2] {
+fn in_disc<N: Enclosing>(numbers: DVec2) -> [N; 2] {
     let DVec2 { x, y } = 2.0 * numbers - 1.0;
     let quarter = N::constant(0.25) * N::enclosing(Interval::pi());
     let [across, up] = [numbers.x, numbers.y].map(centred::<N>);
@@ -288,6 +288,6 @@ fn in_disc<N: Number>(numbers: DVec2) -> [N; 2] {
 }
 
 /// Maps a number from 0 to 1 to one from -1 to 1.
-fn centred<N: Number>(number: f64) -> N {
+fn centred<N: Enclosing>(number: f64) -> N {
     N::constant(2.0) * N::constant(number) - N::constant(1.0)
 }

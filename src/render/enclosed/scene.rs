@@ -1,6 +1,6 @@
 //! A scene for proofs of colours: the objects that lines may hit.
 
-use super::number::{Hit, Number, coarse};
+use super::number::{Enclosing, Hit, coarse};
 use crate::plan::depth::{self, Depth};
 use std::cell::Cell;
 use tabray_exact::interval::{Float, Interval};
@@ -108,7 +108,7 @@ impl EnclosedScene<'_> {
 
     /// Calls `met` with the possible hits of all lines with an object, until `met` returns false. `coarse` encloses the
     /// lines. Returns whether `met` never returned false.
-    pub(super) fn hits<N: Number>(
+    pub(super) fn hits<N: Enclosing>(
         &self,
         path: &Path<N>,
         coarse: &Line<Interval>,
@@ -135,7 +135,7 @@ impl EnclosedScene<'_> {
     }
 
     /// Returns the first hits of lines; `None` where they are a crowd.
-    pub(super) fn first<N: Number>(&self, path: &Path<N>) -> Option<FirstHits<N>> {
+    pub(super) fn first<N: Enclosing>(&self, path: &Path<N>) -> Option<FirstHits<N>> {
         let (mut all, mut end) = (Vec::new(), N::End::INFINITY);
         let coarse = coarse(&path.line);
         self.along(&coarse, &mut |object| {

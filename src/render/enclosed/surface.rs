@@ -1,6 +1,6 @@
 //! The points of a surface that lines hit.
 
-use super::number::{Endpoint, Number, ranges};
+use super::number::{Enclosing, Endpoint, ranges};
 use super::scene::{Colour, EnclosedScene, Place};
 use super::tangents::tangents;
 use tabray_exact::interval::Interval;
@@ -37,7 +37,7 @@ pub(super) struct HitPoints<N> {
     pub coverage: Option<N>,
 }
 
-impl<N: Number> HitPoints<N> {
+impl<N: Enclosing> HitPoints<N> {
     /// Returns the points at t of lines, once for each way that the normals may face; `None` where the normals or the
     /// look are open. `window` has the samples' window and the path lengths before the lines: with it, a shader's
     /// look is a mean over a patch.
@@ -167,7 +167,7 @@ impl<N: Number> HitPoints<N> {
 }
 
 /// Returns the fraction of light that passes through an object at points; `None` where it is open.
-pub(super) fn tint<N: Number>(transparency: f64, diffuse: Colour<N>) -> Option<Colour<N>> {
+pub(super) fn tint<N: Enclosing>(transparency: f64, diffuse: Colour<N>) -> Option<Colour<N>> {
     let [red, green, blue] = diffuse;
     let (transparency, one) = (N::constant(transparency), N::constant(1.0));
     let strongest = red.max(green).max(blue);
@@ -184,6 +184,6 @@ pub(super) fn tint<N: Number>(transparency: f64, diffuse: Colour<N>) -> Option<C
 }
 
 /// Tells whether a colour is black, for certain.
-pub(super) fn is_black<N: Number>(colour: &Colour<N>) -> bool {
+pub(super) fn is_black<N: Enclosing>(colour: &Colour<N>) -> bool {
     colour.iter().all(|channel| channel.is_zero())
 }

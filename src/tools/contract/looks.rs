@@ -180,17 +180,17 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
         return Err(Promise::LightIsFinite.fault(format!("it is at {location}, its size is {size}")));
     }
     for toward in places(location, draw) {
-        let one = light.emissivity(toward);
-        if one.is_some_and(|light| !light.is_finite()) {
-            return Err(Promise::LightIsFinite.fault(format!("toward {toward} it emits {one:?}")));
+        let one = Rgb::from(light.sends(toward.to_array()));
+        if !one.is_finite() {
+            return Err(Promise::LightIsFinite.fault(format!("toward {toward} it emits {one}")));
         }
         if let Some(even) = light.uniform()
-            && one != Some(even)
+            && one != even
         {
-            let found = format!("`uniform` is {even}, and toward {toward} it emits {one:?}");
+            let found = format!("`uniform` is {even}, and toward {toward} it emits {one}");
             return Err(Promise::PacketsAgree.fault(found));
         }
-        if let (Some(limit), Some(one)) = (light.brightest(), one)
+        if let Some(limit) = light.brightest()
             && !one.abs().cmple(limit.abs()).all()
         {
             let found = format!("`brightest` is {limit}, and toward {toward} it emits {one}");
@@ -219,9 +219,9 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
                 facing,
             );
             let many = light.uniform().unwrap_or(emissivity.get(LANES - 1));
-            let does_shine = one.is_some() && toward != location;
-            if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[LANES - 1] != u64::from(does_shine) {
-                let found = format!("{many:?} in packets ({cpu}), {one:?} toward {toward}");
+            let does_shine = one != Rgb::ZERO && toward != location;
+            if !same_bits(many, one) || shines[LANES - 1] != u64::from(does_shine) {
+                let found = format!("{many} in packets ({cpu}), {one} toward {toward}");
                 return Err(Promise::PacketsAgree.fault(found));
             }
         }
@@ -242,9 +242,9 @@ fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut
     let cosine = if emitter.has_highlights() { 1.0 } else { toward.dot(normal).max(0.0) };
     let is_bounded =
         light.brightest().is_none_or(|most| (cosine * sent).abs().cmple((1.0 + 1e-9) * most.abs()).all());
-    let density = emitter.density(at, toward, distance).zip(light.emissivity(at));
+    let (density, radiance) = (emitter.density(at, toward, distance), Rgb::from(light.sends(at.to_array())));
     let is_dark = |radiance: Rgb| light.brightest().is_none_or(|most| radiance.abs().cmple(most.abs()).all());
-    let agrees = density.is_none_or(|(density, radiance)| {
+    let agrees = density.is_none_or(|density| {
         let slack = 1e-4 * radiance.abs().max_element();
         is_dark(radiance) && (PI * density * sent).abs_diff_eq(radiance, slack)
     });
@@ -252,7 +252,6 @@ fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut
         return Ok(());
     }
     let most = light.brightest();
-    let density = density.map(|(density, _)| density);
     let found = format!(
         "{at}, with the normal {normal}, sees it at {numbers} as {sample:?}; `brightest` is {most:?}, and `density` \
          {density:?}"

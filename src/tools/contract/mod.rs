@@ -281,8 +281,10 @@ mod tests {
     use tabray_core::world::body::ShaderFactory;
     use tabray_core::world::light::Light;
     use tabray_core::world::material::{Look, Material, Rgb};
+    use tabray_core::world::number::Number;
     use tabray_core::world::shader::{Anchor, Plain, Shader};
     use tabray_core::world::surface_point::{ShaderInputs, SurfacePoint};
+    use tabray_exact::scalar::constants;
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
     static UNBOUNDED: Profile = Profile::new("unbounded", "a horn", "1 / y");
@@ -314,8 +316,8 @@ mod tests {
             DVec3::ZERO
         }
 
-        fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
-            (toward.y < 0.0).then_some(Rgb::ONE)
+        fn sent<N: Number>(&self, [_, y, _]: [N; 3]) -> [N; 3] {
+            y.either(constants(Rgb::ZERO), constants(Rgb::ONE))
         }
 
         fn uniform(&self) -> Option<Rgb> {

@@ -146,9 +146,7 @@ impl Promise {
             Self::LightGoesOn => {
                 "clamp the reflected fraction, and normalize the direction in which the rest is transmitted"
             }
-            Self::LightIsFinite => {
-                "return `None` where no light arrives, including at the light's own location"
-            }
+            Self::LightIsFinite => "return 0 where no light arrives, including at the light's own location",
             Self::BackgroundIsSound => {
                 "state rules for the attributes, and leave out `enclose` if in doubt; `brightest` bounds all colours"
             }

@@ -2,16 +2,17 @@
 //!
 //! All arrays are as long as those of the packet whose rays hit the points.
 
-use crate::certify::Precise;
 use crate::geometry::aabb::larger;
 use crate::light::Light;
 use crate::material::Rgb;
+use crate::number::Number;
+use crate::packets::shader::is_any;
 use crate::rules::Rules;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
-use f256::f256;
 use glam::DVec3;
-use tabray_exact::interval::{Fraction, Interval};
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::{Fine, Interval, Wide};
 
 /// Points of a surface that may see a light.
 pub struct ShadingPoints<'p> {
@@ -52,20 +53,22 @@ pub struct AnyLit {
 }
 
 /// A light for packets. Every [`Light`] is one.
-pub trait PacketLight: Light + EncloseLight<f64> + EncloseLight<f256> + EncloseLight<Fraction> {
-    /// Samples the light from many points, with what [`emissivity`](Light::emissivity) returns for each.
+pub trait PacketLight:
+    Light + Sends<f64> + Sends<Interval> + Sends<Affine> + Sends<Wide> + Sends<Fine>
+{
+    /// Samples the light from many points, with what is [`sent`](Light::sent) to each.
     fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> AnyLit;
 }
 
-/// A light that is enclosed in one precision. Every [`Light`] is one.
-pub trait EncloseLight<F> {
-    /// Calls [`Light::enclose`].
-    fn sent(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
+/// A light of any type, asked in one number. Every [`Light`] is one.
+pub trait Sends<N> {
+    /// Calls [`Light::sent`].
+    fn sends(&self, toward: [N; 3]) -> [N; 3];
 }
 
-impl<T: Light, F: Precise> EncloseLight<F> for T {
-    fn sent(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        self.enclose(toward)
+impl<T: Light, N: Number> Sends<N> for T {
+    fn sends(&self, toward: [N; 3]) -> [N; 3] {
+        self.sent(toward)
     }
 }
 
@@ -128,12 +131,12 @@ fn sample_each<T: Light>(
         let cosine = dir.dot(normals.get(lane));
         // A light on the surface itself makes the cosine NaN, and counts as behind.
         let faces = u64::from(cosine > 0.0);
-        let sent = light.emissivity(point);
-        let does_shine = faces & u64::from(sent.is_some());
+        let sent = Rgb::from(light.sent(point.to_array()));
+        let does_shine = faces & is_any(sent);
         let ray_end = distance - slack * (distance + reach(point));
         toward.set(lane, dir);
         if !is_uniform {
-            emissivity.set(lane, sent.unwrap_or(Rgb::ZERO));
+            emissivity.set(lane, sent);
         }
         strengths[lane] = received(cosine, inverse);
         t_max[lane] = if does_shine != 0 { ray_end } else { 0.0 };

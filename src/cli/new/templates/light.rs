@@ -30,11 +30,15 @@ impl Light for Template {
         self.bulb.location
     }
 
-    /// Returns the light that it emits toward a point, or nothing where it does not shine.
+    /// Returns the light that it emits toward a point, or 0 where it does not shine. `N` is `f64` for pictures; for
+    /// proofs of colours, it is a number that encloses all points of a box.
     #[inline]
-    fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
-        let down = (self.bulb.location - toward).normalize_or_zero().y;
-        (down > 0.0).then(|| self.bulb.emissivity * libm::pow(down, self.narrow))
+    fn sent<N: Number>(&self, toward: [N; 3]) -> [N; 3] {
+        let (n, location) = (N::constant, self.bulb.location);
+        let up = unit(per_axis(|axis| toward[axis] - n(location[axis])))[1];
+        let part = (-up).max(n(0.0)).pow(n(self.narrow));
+        let below = self.bulb.sent(toward).map(|channel| part * channel);
+        up.either([n(0.0); 3], below)
     }
 
     fn size(&self) -> f64 {

@@ -18,7 +18,6 @@ use tabray_exact::interval::Interval;
 use tabray_exact::scalar::per_axis;
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::material::{Look, Rgb};
-use tabray_world::packets::light::EncloseLight;
 use tabray_world::scene::model::{Model, Object};
 use tabray_world::shader::EncloseLook;
 use tabray_world::shader::LookBounds;
@@ -81,8 +80,7 @@ fn background(model: &Model) -> [Rgb; 2] {
 fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
     let everywhere = around(None);
     let is_positive = |sent: [Interval; 3]| sent.iter().all(|channel| channel.low >= 0.0);
-    let are_positive = |lamp: &dyn EncloseLight<f64>| lamp.sent(everywhere).is_some_and(is_positive);
-    if !model.lights.iter().all(|lamp| are_positive(&*lamp.value.light)) {
+    if !model.lights.iter().all(|lamp| is_positive(lamp.value.light.sends(everywhere))) {
         return None;
     }
     let left = model.objects.iter().fold(Rgb::ONE, |least, object| least.min(left(object)));

@@ -1,0 +1,154 @@
+//! The numbers in which lights and shaders state their rules: `f64` for pictures, and numbers that enclose others for
+//! proofs.
+
+use crate::certify::Precise;
+use crate::material::Rgb;
+use glam::DVec3;
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::{Fine, Interval};
+use tabray_exact::scalar::{Scalar, constants, per_axis};
+
+/// A constant that is not a number of the scene itself, and that rounding changes.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// The constant as pictures take it.
+    pub rounded: f64,
+    /// Encloses the constant before any rounding.
+    pub enclosed: Fine,
+}
+
+impl Known {
+    /// Joins a vector as pictures take it, and its enclosure.
+    pub fn each(rounded: [f64; 3], enclosed: [Fine; 3]) -> [Self; 3] {
+        per_axis(|axis| Self { rounded: rounded[axis], enclosed: enclosed[axis] })
+    }
+
+    /// Returns a known vector in any number.
+    #[inline(always)]
+    pub fn vector<N: Number>(of: &[Self; 3]) -> [N; 3] {
+        per_axis(|axis| N::known(&of[axis]))
+    }
+}
+
+/// The maximum number of columns or rows whose texels an enclosure examines one by one.
+pub(crate) const MAX_TEXELS: usize = 8;
+
+/// A number of a rule of light. A rule that is written once over such numbers gives colours, and bounds of them.
+pub trait Number: Scalar {
+    /// Returns a constant.
+    fn known(of: &Known) -> Self;
+
+    /// Returns any number between two, for what a rule leaves open; of plain numbers, the second one.
+    fn any(low: f64, high: f64) -> Self;
+
+    /// Returns the number, if it encloses no others: for a rule that pictures compute in another way than proofs.
+    #[inline(always)]
+    fn plain(self) -> Option<f64> {
+        None
+    }
+
+    /// Returns `other` if this number is negative, and otherwise `one`; bounds of both where that is open.
+    #[inline(always)]
+    fn either(self, one: [Self; 3], other: [Self; 3]) -> [Self; 3] {
+        per_axis(|channel| self.choose(one[channel], other[channel]))
+    }
+
+    /// Returns bounds of two numbers; of plain numbers, the second one.
+    fn hull(self, other: Self) -> Self;
+
+    /// Returns the least and the greatest whole number at most this number.
+    fn floors(self) -> [f64; 2];
+
+    /// Returns what a function returns for the whole numbers at most these two. Each channel is from 0 to `most`; where
+    /// there are many such numbers, that is all that is known.
+    fn table(at: [Self; 2], most: impl Fn() -> f64, of: impl Fn([f64; 2]) -> Rgb) -> [Self; 3] {
+        let [columns, rows] = at.map(Self::floors);
+        let are_few = |[low, high]: [f64; 2]| high - low < MAX_TEXELS as f64;
+        if !(are_few(columns) && are_few(rows)) {
+            return [Self::any(0.0, most()); 3];
+        }
+        let all = |[low, high]: [f64; 2]| (0..=(high - low) as u32).map(move |step| low + f64::from(step));
+        let hull = |one: [Self; 3], other: [Self; 3]| per_axis(|channel| one[channel].hull(other[channel]));
+        let found = all(rows).flat_map(|row| all(columns).map(move |column| [column, row]));
+        found.map(|at| constants(of(at))).reduce(hull).unwrap_or([Self::any(0.0, most()); 3])
+    }
+}
+
+/// Returns a vector of plain numbers, if these are plain.
+#[inline(always)]
+pub fn plain<N: Number>([x, y, z]: [N; 3]) -> Option<DVec3> {
+    Some(DVec3::new(x.plain()?, y.plain()?, z.plain()?))
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn known(of: &Known) -> Self {
+        of.rounded
+    }
+
+    #[inline(always)]
+    fn any(_low: f64, high: f64) -> Self {
+        high
+    }
+
+    #[inline(always)]
+    fn plain(self) -> Option<f64> {
+        Some(self)
+    }
+
+    #[inline(always)]
+    fn either(self, one: [Self; 3], other: [Self; 3]) -> [Self; 3] {
+        if self < 0.0 { other } else { one }
+    }
+
+    #[inline(always)]
+    fn hull(self, other: Self) -> Self {
+        other
+    }
+
+    #[inline(always)]
+    fn floors(self) -> [f64; 2] {
+        [self.floor(); 2]
+    }
+
+    #[inline(always)]
+    fn table(at: [Self; 2], _most: impl Fn() -> f64, of: impl Fn([f64; 2]) -> Rgb) -> [Self; 3] {
+        constants(of([at[0].floor(), at[1].floor()]))
+    }
+}
+
+impl<F: Precise> Number for Interval<F> {
+    fn known(of: &Known) -> Self {
+        F::narrow(of.enclosed)
+    }
+
+    fn any(low: f64, high: f64) -> Self {
+        Self { low: F::of(low), high: F::of(high) }
+    }
+
+    fn hull(self, other: Self) -> Self {
+        Interval::hull(self, other)
+    }
+
+    fn floors(self) -> [f64; 2] {
+        [self.low, self.high].map(|end| end.floor().to_f64())
+    }
+}
+
+impl Number for Affine {
+    fn known(of: &Known) -> Self {
+        Interval::known(of).into()
+    }
+
+    fn any(low: f64, high: f64) -> Self {
+        Interval { low, high }.into()
+    }
+
+    fn hull(self, other: Self) -> Self {
+        Affine::hull(self, other)
+    }
+
+    fn floors(self) -> [f64; 2] {
+        self.range().floors()
+    }
+}
