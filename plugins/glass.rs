@@ -72,30 +72,6 @@ pub struct Glass {
 }
 
 impl Interface for Glass {
-    /// Follows Snell's law and Fresnel's equations for light that is not polarised.
-    fn cross(&self, dir: DVec3, normal: DVec3, side: Side) -> Crossing {
-        if self.index == 1.0 {
-            return Crossing { reflected: Rgb::ZERO, onward: Some(dir) };
-        }
-        let (from, to) = match side {
-            Side::Outside => (1.0, self.index),
-            Side::Inside => (self.index, 1.0),
-        };
-        let ratio = from / to;
-        let cosine = (-dir.dot(normal)).clamp(0.0, 1.0);
-        let below = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
-        if below <= 0.0 {
-            return Crossing { reflected: Rgb::ONE, onward: None };
-        }
-        let onward = below.sqrt();
-        let across = (from * cosine - to * onward) / (from * cosine + to * onward);
-        let along = (to * cosine - from * onward) / (to * cosine + from * onward);
-        Crossing {
-            reflected: Rgb::splat(0.5 * (across * across + along * along)),
-            onward: Some((ratio * dir + (ratio * cosine - onward) * normal).normalize()),
-        }
-    }
-
     fn absorbs(&self) -> bool {
         false
     }

@@ -46,11 +46,6 @@ pub struct Metal {
 
 impl Interface for Metal {
     /// Follows Schlick's approximation of Fresnel's equations (1994), and absorbs the light that is not reflected.
-    fn cross(&self, dir: DVec3, normal: DVec3, _side: Side) -> Crossing {
-        let grazing = Scalar::powi((1.0 + dir.dot(normal)).clamp(0.0, 1.0), 5);
-        Crossing { reflected: self.colour + (Rgb::ONE - self.colour) * grazing, onward: None }
-    }
-
     fn law(&self) -> Law {
         Law::Schlick(self.colour)
     }

@@ -70,7 +70,7 @@ impl Light for Sun {
 
 impl Emitter for Sun {
     fn sample(&self, _at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
-        let toward = emitter::in_cone(self.direction, self.height, numbers);
+        let toward = emitter::in_cone(self.direction.to_array(), self.height, numbers)?.into();
         Some(LightSample { toward, distance: f64::INFINITY, light: self.light() })
     }
 

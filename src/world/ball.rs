@@ -36,7 +36,7 @@ impl Ball {
             Some(height) => (between.try_normalize()?, height),
             None => (normal, 1.0),
         };
-        let toward = in_cone(axis, height, numbers);
+        let toward = DVec3::from(in_cone(axis.to_array(), height, numbers)?);
         let along = between.dot(toward);
         let half_chord = (radius * radius - between.cross(toward).length_squared()).max(0.0).sqrt();
         let distance = match is_outside {

@@ -2,11 +2,14 @@
 
 use crate::coat::Coat;
 use crate::geometry::ray::Side;
+use crate::number::{Known, Number};
 use glam::DVec3;
 use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
+use tabray_exact::interval::Fine;
+use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 /// How light continues at a surface: which fraction is reflected, and in which direction the rest is transmitted.
 ///
@@ -14,8 +17,13 @@ use std::sync::Arc;
 /// reflectivity.
 pub trait Interface: Send + Sync {
     /// Returns how a ray continues that hits the surface on a side. `dir` is its unit direction, and `normal` the unit
-    /// normal that faces it: `dir.dot(normal)` is at most 0.
-    fn cross(&self, dir: DVec3, normal: DVec3, side: Side) -> Crossing;
+    /// normal that faces it: `dir.dot(normal)` is at most 0. The default follows the [`law`](Self::law).
+    fn cross(&self, dir: DVec3, normal: DVec3, side: Side) -> Crossing {
+        let crossing = self.law().cross(dir.to_array(), normal.to_array(), side == Side::Inside);
+        let absorbed = Crossing { reflected: [0.0; 3], onward: None };
+        let Crossing { reflected, onward } = crossing.unwrap_or(absorbed);
+        Crossing { reflected: reflected.into(), onward: onward.map(DVec3::from) }
+    }
 
     /// Tells whether any light may be neither reflected nor transmitted: [`Crossing::onward`] is `None` although less
     /// than all is reflected. `true` is always correct.
@@ -29,7 +37,8 @@ pub trait Interface: Send + Sync {
         None
     }
 
-    /// Returns the law by which rays [`cross`](Self::cross) the surface, for proofs. The default is always correct.
+    /// Returns the law by which rays [`cross`](Self::cross) the surface. An interface of another law says how they cross,
+    /// and is not proven.
     fn law(&self) -> Law {
         Law::Unknown
     }
@@ -59,13 +68,51 @@ pub enum Law {
     Unknown,
 }
 
+impl Law {
+    /// Returns how rays along unit vectors continue at a surface with unit normals that face them, on its inside or its
+    /// outside; `None` where that is open.
+    pub fn cross<N: Number>(self, dir: [N; 3], normal: [N; 3], is_inside: bool) -> Option<Crossing<[N; 3]>> {
+        let (n, one) = (N::constant, N::constant(1.0));
+        let cosine = (-dot(dir, normal)).max(n(0.0)).min(one);
+        match self {
+            Self::Schlick(colour) => {
+                let grazing = (one - cosine).powi(5);
+                let colour: [N; 3] = constants(colour);
+                let reflected = per_axis(|channel| colour[channel] + (one - colour[channel]) * grazing);
+                Some(Crossing { reflected, onward: None })
+            }
+            Self::Fresnel(1.0) => Some(Crossing { reflected: [n(0.0); 3], onward: Some(dir) }),
+            Self::Fresnel(index) => {
+                let (from, to) = if is_inside { (n(index), one) } else { (one, n(index)) };
+                let ratio = from / to;
+                let below = one - ratio * ratio * (one - cosine.powi(2));
+                let [least, most] = below.bounds();
+                if most <= 0.0 {
+                    return Some(Crossing { reflected: [one; 3], onward: None });
+                }
+                if least <= 0.0 {
+                    return None;
+                }
+                let root = below.sqrt();
+                let across = (from * cosine - to * root) / (from * cosine + to * root);
+                let along = (to * cosine - from * root) / (to * cosine + from * root);
+                let reflected = n(0.5) * (across.powi(2) + along.powi(2));
+                let bend = ratio * cosine - root;
+                let onward = N::lengthened(per_axis(|axis| ratio * dir[axis] + bend * normal[axis]));
+                Some(Crossing { reflected: [reflected; 3], onward: Some(onward) })
+            }
+            Self::Unknown => None,
+        }
+    }
+}
+
 /// A clear medium that absorbs light according to the length of the path through it (Beer's law).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     /// The fractions of light that are left after the length `at`.
     left: DVec3,
     /// The logarithms of the fractions of light that are left after the length `at`.
-    logarithms: DVec3,
+    logarithms: [Known; 3],
     /// A length, in world units.
     at: f64,
 }
@@ -74,34 +121,29 @@ impl Medium {
     /// Makes a medium that leaves these fractions of light, more than 0 and at most 1, after the length `at`, in
     /// world units; `None` if it leaves all.
     pub fn new(left: DVec3, at: f64) -> Option<Self> {
-        (left != DVec3::ONE).then(|| Self { left, logarithms: left.map(libm::log), at })
+        let enclosed: [Fine; 3] = constants(left);
+        let logarithms = Known::each(left.map(libm::log).to_array(), enclosed.map(Scalar::ln));
+        (left != DVec3::ONE).then_some(Self { left, logarithms, at })
     }
 
-    /// Returns the fractions of light that are left after the length [`at`](Self::at).
-    pub fn left(&self) -> DVec3 {
-        self.left
-    }
-
-    /// Returns the length after which the fractions [`left`](Self::left) are left, in world units.
-    pub fn at(&self) -> f64 {
-        self.at
-    }
-
-    /// Returns the fraction of light that passes along a path of this length, in world units.
-    pub fn passed(&self, length: f64) -> DVec3 {
-        let lengths = length / self.at;
-        // On an endless path, a channel that loses any light loses all of it.
-        self.logarithms.map(|left| if left == 0.0 { 1.0 } else { libm::exp(left * lengths) })
+    /// Returns the fractions of light that pass along a path of this length, in world units.
+    pub fn passed<N: Number>(&self, length: N) -> [N; 3] {
+        let (one, lengths) = (N::constant(1.0), length / N::constant(self.at));
+        per_axis(|channel| match self.left[channel] {
+            // On an endless path, a channel that loses any light loses all of it.
+            1.0 => one,
+            _ => (N::known(&self.logarithms[channel]) * lengths).exp().min(one).max(N::constant(0.0)),
+        })
     }
 }
 
 /// How a ray continues at an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct Crossing<C = DVec3> {
     /// The fraction of the light that is reflected as by a mirror, from 0 to 1, in red, green and blue.
-    pub reflected: DVec3,
+    pub reflected: C,
     /// The unit direction in which the rest is transmitted; `None` if it is absorbed.
-    pub onward: Option<DVec3>,
+    pub onward: Option<C>,
 }
 
 /// Any [`Interface`].

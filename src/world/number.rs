@@ -4,12 +4,13 @@
 use crate::certify::Precise;
 use crate::material::Rgb;
 use glam::DVec3;
+use std::f64::consts::PI;
 use tabray_exact::affine::Affine;
 use tabray_exact::interval::{Fine, Interval};
-use tabray_exact::scalar::{Scalar, constants, per_axis};
+use tabray_exact::scalar::{Scalar, constants, dot, per_axis, unit};
 
 /// A constant that is not a number of the scene itself, and that rounding changes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
     /// The constant as pictures take it.
     pub rounded: f64,
@@ -38,6 +39,9 @@ pub trait Number: Scalar {
     /// Returns a constant.
     fn known(of: &Known) -> Self;
 
+    /// Returns π.
+    fn pi() -> Self;
+
     /// Returns any number between two, for what a rule leaves open; of plain numbers, the second one.
     fn any(low: f64, high: f64) -> Self;
 
@@ -51,6 +55,23 @@ pub trait Number: Scalar {
     #[inline(always)]
     fn either(self, one: [Self; 3], other: [Self; 3]) -> [Self; 3] {
         per_axis(|channel| self.choose(one[channel], other[channel]))
+    }
+
+    /// Returns the unit vector along a vector; where it has none, `straight`. `None` where that is open.
+    fn along(vector: [Self; 3], straight: [Self; 3]) -> Option<[Self; 3]>;
+
+    /// Returns a vector that would have the length 1 without rounding, with that length.
+    #[inline(always)]
+    fn lengthened(vector: [Self; 3]) -> [Self; 3] {
+        vector
+    }
+
+    /// Returns 1 with the sign of the number; `None` where that is open.
+    #[inline(always)]
+    fn sign(self) -> Option<Self> {
+        let [low, high] = self.bounds();
+        let sign = if low >= 0.0 { Some(1.0) } else { (high < 0.0).then_some(-1.0) };
+        sign.map(Self::constant)
     }
 
     /// Returns bounds of two numbers; of plain numbers, the second one.
@@ -87,6 +108,11 @@ impl Number for f64 {
     }
 
     #[inline(always)]
+    fn pi() -> Self {
+        PI
+    }
+
+    #[inline(always)]
     fn any(_low: f64, high: f64) -> Self {
         high
     }
@@ -99,6 +125,21 @@ impl Number for f64 {
     #[inline(always)]
     fn either(self, one: [Self; 3], other: [Self; 3]) -> [Self; 3] {
         if self < 0.0 { other } else { one }
+    }
+
+    #[inline(always)]
+    fn along(vector: [Self; 3], straight: [Self; 3]) -> Option<[Self; 3]> {
+        Some(DVec3::from(vector).try_normalize().map_or(straight, |unit| unit.to_array()))
+    }
+
+    #[inline(always)]
+    fn lengthened(vector: [Self; 3]) -> [Self; 3] {
+        unit(vector)
+    }
+
+    #[inline(always)]
+    fn sign(self) -> Option<Self> {
+        Some(self.signum())
     }
 
     #[inline(always)]
@@ -122,8 +163,18 @@ impl<F: Precise> Number for Interval<F> {
         F::narrow(of.enclosed)
     }
 
+    fn pi() -> Self {
+        Interval::pi()
+    }
+
     fn any(low: f64, high: f64) -> Self {
         Self { low: F::of(low), high: F::of(high) }
+    }
+
+    fn along(vector: [Self; 3], _straight: [Self; 3]) -> Option<[Self; 3]> {
+        let length = dot(vector, vector).sqrt();
+        let is_known = length.is_bounded() && length.low > F::of(0.0);
+        is_known.then(|| per_axis(|axis| vector[axis] / length))
     }
 
     fn hull(self, other: Self) -> Self {
@@ -140,8 +191,18 @@ impl Number for Affine {
         Interval::known(of).into()
     }
 
+    fn pi() -> Self {
+        Interval::pi().into()
+    }
+
     fn any(low: f64, high: f64) -> Self {
         Interval { low, high }.into()
+    }
+
+    fn along(vector: [Self; 3], _straight: [Self; 3]) -> Option<[Self; 3]> {
+        let length = dot(vector, vector).sqrt();
+        let is_known = length.is_bounded() && length.range().low > 0.0;
+        is_known.then(|| per_axis(|axis| vector[axis] / length))
     }
 
     fn hull(self, other: Self) -> Self {

@@ -1,7 +1,8 @@
 //! Flat panels that shine: rectangles and discs, and the points of them that are seen.
 
+use crate::directions::from_square;
 use glam::{DVec2, DVec3};
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::PI;
 
 /// The points `middle + x half[0] + y half[1]` of a flat panel that shines on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,7 @@ impl Panel {
     pub fn sample(&self, at: DVec3, numbers: DVec2) -> Option<(DVec3, f64)> {
         let (between, half) = (self.middle - at, self.half);
         if between.length() > self.far() {
-            let place = if self.is_round { on_disc(numbers) } else { 2.0 * numbers - 1.0 };
+            let place = if self.is_round { from_square(numbers).into() } else { 2.0 * numbers - 1.0 };
             let toward = between + place.x * half[0] + place.y * half[1];
             let leaving = toward.normalize().dot(self.facing()).abs();
             return Some((toward, self.area() * leaving / toward.length_squared()));
@@ -69,19 +70,6 @@ impl Panel {
         let seen = SphericalRectangle::new(between, self.half)?;
         (seen.solid_angle > 0.0).then(|| 1.0 / seen.solid_angle)
     }
-}
-
-/// Maps two numbers from 0 to 1 to the unit disc, with areas in proportion (Shirley and Chiu, "A Low Distortion Map
-/// Between Disk and Square", 1997).
-pub fn on_disc(numbers: DVec2) -> DVec2 {
-    let DVec2 { x, y } = 2.0 * numbers - 1.0;
-    let (radius, angle) = match x.abs() > y.abs() {
-        true => (x, FRAC_PI_4 * (y / x)),
-        false if y == 0.0 => return DVec2::ZERO,
-        false => (y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (x / y)),
-    };
-    let (sin, cos) = libm::sincos(angle);
-    radius * DVec2::new(cos, sin)
 }
 
 /// A rectangle as seen from a point: the part of a unit sphere that it covers.

@@ -1,5 +1,6 @@
 //! The random numbers of a pixel's samples: the same for any number of threads.
 
+use crate::directions::on_disc;
 use crate::named;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
@@ -61,7 +62,7 @@ impl Sample {
 
     /// Returns the point of the unit disc that chooses a point of the camera's lens.
     pub(crate) fn on_lens(&self) -> DVec2 {
-        on_disc(self.draw(ON_LENS))
+        on_disc(self.draw(ON_LENS)).into()
     }
 
     /// Returns two numbers from 0 to 1, which choose a facet of a rough surface after this many rays of a path.
@@ -187,12 +188,6 @@ const ON_SCATTERING: u32 = 1 << 31;
 /// The purpose of the numbers that choose how the first ray of a path goes on; those after it count upward.
 const ON_BRANCHING: u32 = 3 << 30;
 
-/// Returns the point of the unit disc that two numbers from 0 to 1 choose, uniformly by area.
-pub fn on_disc(numbers: DVec2) -> DVec2 {
-    let (sin, cos) = libm::sincos(TAU * numbers.y);
-    numbers.x.sqrt() * DVec2::new(cos, sin)
-}
-
 /// Writes the [`jitter`](Sample::jitter) of each sample, in pixels, to `x` and `y`.
 pub fn jitters(cpu: Cpu, samples: &Samples, x: &mut [f64], y: &mut [f64]) {
     draw(cpu, samples, JITTER, x, y);
@@ -216,7 +211,7 @@ pub fn on_lenses(cpu: Cpu, samples: &Samples, x: &mut [f64], y: &mut [f64]) {
 /// Writes a point of the lens's rim for each fraction of a turn.
 pub fn on_rim(turns: impl Iterator<Item = f64>, x: &mut [f64], y: &mut [f64]) {
     for ((turn, x), y) in turns.zip(x).zip(y) {
-        DVec2 { x: *x, y: *y } = on_disc(DVec2::new(1.0, turn));
+        [*x, *y] = on_disc(DVec2::new(1.0, turn));
     }
 }
 

@@ -56,7 +56,7 @@ impl Light for SkyLight {
 impl Emitter for SkyLight {
     fn sample(&self, _at: DVec3, normal: DVec3, numbers: DVec2) -> Option<LightSample> {
         let Some(map) = self.map() else {
-            let toward = by_cosine(normal, numbers);
+            let toward = DVec3::from(by_cosine(normal.to_array(), numbers)?);
             let cosine = toward.dot(normal);
             let light = self.background.colour(toward) / cosine;
             return (cosine > 0.0).then_some(LightSample { toward, distance: f64::INFINITY, light });
@@ -64,7 +64,9 @@ impl Emitter for SkyLight {
         // The middle of the range chooses by the cosine, so a single sample is the most even one.
         let DVec2 { x, y } = numbers;
         let toward = match x {
-            x if (0.25..0.75).contains(&x) => by_cosine(normal, DVec2::new(2.0 * (x - 0.25), y)),
+            x if (0.25..0.75).contains(&x) => {
+                by_cosine(normal.to_array(), DVec2::new(2.0 * (x - 0.25), y))?.into()
+            }
             x => map.direction(DVec2::new(if x < 0.25 { 2.0 * x } else { 2.0 * x - 1.0 }, y)),
         };
         let cosine = toward.dot(normal);

@@ -1,11 +1,11 @@
 //! The light that reaches the points of a surface.
 
-use super::directions::{in_disc, orthonormal_pair};
 use super::number::Enclosing;
 use super::panes::{Ends, passed};
 use super::scene::{Colour, EnclosedScene, Path};
 use super::surface::{HitPoints, is_black};
 use tabray_exact::scalar::{cross, dot, per_axis, unit};
+use tabray_world::directions::{self, orthonormal_pair};
 use tabray_world::geometry::sight::Line;
 use tabray_world::packets::light::PacketLight;
 use tabray_world::rules::{Falloff, Rules};
@@ -91,7 +91,9 @@ fn toward<N: Enclosing>(
     }
     let (place, [across, up]) = match seen {
         LightPoints::Middle => return Some(toward),
-        LightPoints::Of(sample) => (in_disc(sample.on_light(index)), orthonormal_pair(unit(toward))?),
+        LightPoints::Of(sample) => {
+            (directions::on_disc(sample.on_light(index)), orthonormal_pair(unit(toward))?)
+        }
         LightPoints::All => return Some(on_disc(toward, n(size))),
     };
     let [x, y] = place.map(|coordinate| n(size) * coordinate);

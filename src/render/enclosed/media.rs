@@ -3,7 +3,7 @@
 
 use super::number::Enclosing;
 use super::scene::{Colour, EnclosedScene, Path};
-use tabray_exact::scalar::per_axis;
+use tabray_exact::scalar::constants;
 use tabray_world::interface::Medium;
 
 /// Returns the medium that absorbs light between the start of lines and their hit. `met` is the object hit, if any,
@@ -22,14 +22,5 @@ pub(super) fn between<N: Enclosing>(
 
 /// Encloses the fractions of light that pass through a medium over a length in world units; `None` is endless.
 pub(super) fn passed<N: Enclosing>(medium: &Medium, length: Option<N>) -> Colour<N> {
-    let (zero, one) = (N::constant(0.0), N::constant(1.0));
-    let left = medium.left();
-    per_axis(|channel| match length {
-        _ if left[channel] == 1.0 => one,
-        None => zero,
-        Some(length) => {
-            let logarithm = N::constant(left[channel]).ln();
-            (logarithm * length / N::constant(medium.at())).exp().min(one).max(zero)
-        }
-    })
+    length.map_or_else(|| constants(medium.passed(f64::INFINITY).into()), |length| medium.passed(length))
 }

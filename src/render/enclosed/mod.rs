@@ -11,10 +11,7 @@
 //! [`Interval`]: tabray_exact::interval::Interval
 //! [`Affine`]: tabray_exact::affine::Affine
 
-mod crossing;
-mod directions;
 mod emitted;
-mod facets;
 mod light;
 mod media;
 mod number;

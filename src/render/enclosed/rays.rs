@@ -1,6 +1,5 @@
 //! The colours that rays return.
 
-use super::crossing::{Crossings, crossings};
 use super::emitted;
 use super::light::{self, LightPoints};
 use super::media;
@@ -12,6 +11,7 @@ use crate::plan::lamps;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{constants, dot, per_axis};
 use tabray_world::geometry::sight::Line;
+use tabray_world::interface::Crossing;
 use tabray_world::interface::{Interface, Medium};
 use tabray_world::rules::{self, Rules};
 use tabray_world::scene::model::Object;
@@ -264,7 +264,7 @@ impl<'s> EnclosingTracer<'s> {
             (_, LightPoints::All) => return None,
         };
         let surface = facet.as_ref().unwrap_or(surface);
-        let Crossings { reflected, onward } = crossings(interface.law(), surface, unit)?;
+        let Crossing { reflected, onward } = surface.crossing(interface.law(), unit)?;
         if let Some(onward) = onward {
             let tint = tint(transparency, surface.diffuse)?;
             let through = per_axis(|channel| tint[channel] * (one - reflected[channel]));

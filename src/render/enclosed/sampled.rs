@@ -1,6 +1,5 @@
 //! The points that samples choose on extended lights.
 
-use super::directions::orthonormal_pair;
 use super::light::on_disc;
 use super::number::Enclosing;
 use super::panes::Ends;
@@ -11,6 +10,7 @@ use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{constants, cross, dot, per_axis, unit};
 use tabray_world::background::Background;
 use tabray_world::ball::Ball;
+use tabray_world::directions::{by_cosine, from_square, in_cone};
 use tabray_world::emitter::Extent;
 use tabray_world::panel::Panel;
 use tabray_world::sky_map::SkyMap;
@@ -60,7 +60,7 @@ pub(super) fn at_place<N: Enclosing>(panel: &Panel, at: [N; 3], place: [N; 2]) -
     let square = dot(toward, toward);
     // The rounding of its area and its direction is less than the tolerance with which colours are compared.
     let leaving = (dot(toward, constants(panel.facing())) / square.sqrt()).abs();
-    Points::even(toward, n(panel.area()) * leaving / (N::enclosing(Interval::pi()) * square))
+    Points::even(toward, n(panel.area()) * leaving / (N::pi() * square))
 }
 
 /// Encloses the point of a panel that [`Panel::sample`] chooses for two numbers from 0 to 1.
@@ -70,7 +70,7 @@ fn on_panel<N: Enclosing>(panel: &Panel, at: [N; 3], numbers: DVec2) -> Option<O
     let distance = dot(between, between).sqrt().coarse();
     let (far, slack) = (panel.far(), 1e-12 * panel.far());
     if distance.low > far + slack {
-        let place = if panel.is_round { in_disc(numbers) } else { [numbers.x, numbers.y].map(centred) };
+        let place = if panel.is_round { from_square(numbers) } else { [numbers.x, numbers.y].map(centred) };
         return Some(Some(at_place(panel, at, place)));
     }
     if distance.high >= far - slack {
@@ -88,7 +88,7 @@ fn on_panel<N: Enclosing>(panel: &Panel, at: [N; 3], numbers: DVec2) -> Option<O
             return None;
         }
     }
-    Some(Some(Points::even(toward, solid_angle / N::enclosing(Interval::pi()))))
+    Some(Some(Points::even(toward, solid_angle / N::pi())))
 }
 
 /// Encloses the vectors to the points of a rectangle that two numbers choose by solid angle, and the solid angle,
@@ -119,7 +119,7 @@ fn on_rectangle<N: Enclosing>(between: [N; 3], half: [DVec3; 2], numbers: DVec2)
         ((one - cosine) * (one + cosine)).sqrt().atan2(cosine)
     };
     let [g0, g1, g2, g3] = [angle(b0, n1), angle(n1, b1), angle(b1, n3), angle(n3, b0)];
-    let k = n(2.0) * N::enclosing(Interval::pi()) - g2 - g3;
+    let k = n(2.0) * N::pi() - g2 - g3;
     let solid_angle = g0 + g1 - k;
     let (sin, cos) = (n(numbers.x) * solid_angle + k).sin_cos();
     let rise = cos * b0 - b1;
@@ -236,7 +236,7 @@ fn in_sky<N: Enclosing>(
     let density = match map {
         None => cosine,
         Some(map) => {
-            let half_pi = n(0.5) * N::enclosing(Interval::pi());
+            let half_pi = n(0.5) * N::pi();
             let density = map.density_within(per_axis(|axis| toward[axis].coarse()));
             n(0.5) * cosine + half_pi * N::enclosing(Interval::from_f64(density))
         }
@@ -244,47 +244,6 @@ fn in_sky<N: Enclosing>(
     let colour = background.enclose(per_axis(|axis| toward[axis].coarse()));
     let light = per_axis(|channel| N::enclosing(Interval::from_f64(colour[channel])) / density);
     Some(Some(Points { toward, are_far: true, light }))
-}
-
-/// Encloses the unit vector that [`emitter::by_cosine`](tabray_world::emitter::by_cosine) chooses for two numbers
-/// from 0 to 1.
-fn by_cosine<N: Enclosing>(normal: [N; 3], numbers: DVec2) -> Option<[N; 3]> {
-    let place = in_disc(numbers);
-    let [x, y] = place;
-    around(normal, place, (N::constant(1.0) - x * x - y * y).sqrt())
-}
-
-/// Encloses the unit vector that [`emitter::in_cone`](tabray_world::emitter::in_cone) chooses for two numbers from 0
-/// to 1.
-fn in_cone<N: Enclosing>(axis: [N; 3], height: N, numbers: DVec2) -> Option<[N; 3]> {
-    let place: [N; 2] = in_disc(numbers);
-    let [x, y] = place;
-    let drop = height * (x * x + y * y);
-    let part = (height * (N::constant(2.0) - drop)).sqrt();
-    around(axis, place.map(|along| part * along), N::constant(1.0) - drop)
-}
-
-/// Returns the vector with these coordinates across an axis, and along it; `None` where the directions across are open.
-fn around<N: Enclosing>(axis: [N; 3], [x, y]: [N; 2], along: N) -> Option<[N; 3]> {
-    if x.is_zero() && y.is_zero() {
-        return Some(axis.map(|of| along * of));
-    }
-    let [across, up] = orthonormal_pair(axis)?;
-    Some(per_axis(|at| x * across[at] + y * up[at] + along * axis[at]))
-}
-
-/// Encloses the point of the unit disc to which [`on_disc`](tabray_world::panel::on_disc) maps two numbers from 0 to 1.
-fn in_disc<N: Enclosing>(numbers: DVec2) -> [N; 2] {
-    let DVec2 { x, y } = 2.0 * numbers - 1.0;
-    let quarter = N::constant(0.25) * N::enclosing(Interval::pi());
-    let [across, up] = [numbers.x, numbers.y].map(centred::<N>);
-    let (radius, angle) = match x.abs() > y.abs() {
-        true => (across, quarter * (up / across)),
-        false if y == 0.0 => return [N::constant(0.0); 2],
-        false => (up, N::constant(2.0) * quarter - quarter * (across / up)),
-    };
-    let (sin, cos) = angle.sin_cos();
-    [radius * cos, radius * sin]
 }
 
 /// Maps a number from 0 to 1 to one from -1 to 1.

@@ -3,10 +3,13 @@
 use super::number::{Enclosing, Endpoint, ranges};
 use super::scene::{Colour, EnclosedScene, Place};
 use super::tangents::tangents;
+use glam::DVec2;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{dot, per_axis};
 use tabray_world::certify::Precise;
+use tabray_world::directions::facet;
 use tabray_world::geometry::sight::Line;
+use tabray_world::interface::{Crossing, Law};
 use tabray_world::material::Rgb;
 use tabray_world::patch::{MEAN_ROUNDING, MIN_COSINE, PatchBounds, Window};
 use tabray_world::rules;
@@ -150,6 +153,35 @@ impl<N: Enclosing> HitPoints<N> {
             specular: enclosing(look.specular),
             coverage,
         })
+    }
+
+    /// Returns the points with the normals of the facets that two numbers from 0 to 1 choose, among the facets that are
+    /// seen along these unit vectors; `None` where the normals are open.
+    pub fn with_facet(&self, dir: [N; 3], roughness: f64, numbers: DVec2) -> Option<Self> {
+        let own = self.normal;
+        // Bent normals may face away from the rays, and are turned.
+        if dot(own, dir).range().high >= N::of(0.0) {
+            return None;
+        }
+        let normal = facet(own, dir.map(|along| -along), roughness * roughness, numbers)?;
+        Some(Self { normal, geometric_normal: Some(self.geometric_normal.unwrap_or(own)), ..*self })
+    }
+
+    /// Returns how rays along these unit vectors continue at an interface; `None` where that is open.
+    pub fn crossing(&self, law: Law, dir: [N; 3]) -> Option<Crossing<[N; 3]>> {
+        let cross = |normal| law.cross(dir, normal, self.is_inside);
+        let Some(geometric_normal) = self.geometric_normal else { return cross(self.normal) };
+        // Bent normals may face away from the rays; the tracer then turns them.
+        if dot(dir, self.normal).range().high >= N::of(0.0) {
+            return None;
+        }
+        // They may also lead a ray back to the side from which it comes. Then the surface's own normals replace them.
+        let crossing = cross(self.normal)?;
+        match crossing.onward.map(|onward| dot(onward, geometric_normal).range()) {
+            Some(through) if through.low >= N::of(0.0) => cross(geometric_normal),
+            Some(through) if through.high >= N::of(0.0) => None,
+            _ => Some(crossing),
+        }
     }
 
     /// Returns the mirrored directions of rays along `dir`, with the same length; `None` where they are open.

@@ -1,10 +1,10 @@
 //! The directions in which u and v grow along a surface, as the tracer finds them: by comparing places near each other.
 
-use super::directions::orthonormal_pair;
 use super::number::Endpoint;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 use tabray_world::any_shape::AnyShape;
+use tabray_world::directions::orthonormal_pair;
 use tabray_world::surface_point::{NEAR, size_of};
 
 /// An upper limit on the rounding errors of directions found by comparison.

@@ -1,7 +1,7 @@
 //! The facets of rough surfaces: for each ray, the normal of the facet that it hits.
 //!
-//! Facets are drawn in proportion to their visible area, from the distribution of Trowbridge and Reitz, also known as
-//! GGX (Heitz, "Sampling the GGX Distribution of Visible Normals", 2018). All light that a facet reflects or
+//! Facets are [drawn](facet) in proportion to their visible area, from the distribution of Trowbridge and Reitz, also known
+//! as GGX. All light that a facet reflects or
 //! transmits counts, even light that other facets would catch, and what a facet mirrors into the surface is turned
 //! back out of it. So rough surfaces keep all light that smooth ones keep, and the same bounds hold for them.
 
@@ -12,10 +12,10 @@ use super::surface::{Surface, crossing, facing};
 use crate::observer::TraceObserver;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
+use tabray_world::directions::facet;
 use tabray_world::geometry::ray::Side;
 use tabray_world::interface::Interface;
 use tabray_world::material::Rgb;
-use tabray_world::sample::on_disc;
 
 /// The number that chooses the facets of probes: half of the disc of facets lies nearer to the middle.
 const PROBED: f64 = 0.5;
@@ -83,20 +83,8 @@ impl Facets {
 
     /// Returns the normal of the facet that two numbers from 0 to 1 choose.
     fn choose(&self, numbers: DVec2) -> DVec3 {
-        let Self { normal, toward, width, .. } = *self;
-        let (across, up) = normal.any_orthonormal_pair();
-        let seen =
-            DVec3::new(width * toward.dot(across), width * toward.dot(up), toward.dot(normal).max(0.0));
-        let Some(seen) = seen.try_normalize() else { return normal };
-        let right = DVec3::new(-seen.y, seen.x, 0.0).try_normalize().unwrap_or(DVec3::X);
-        let above = seen.cross(right);
-        // The half of the disc that is turned away is squeezed into the part of it that can be seen.
-        let DVec2 { x, y } = on_disc(numbers);
-        let part = 0.5 * (1.0 + seen.z);
-        let y = (1.0 - part) * (1.0 - x * x).max(0.0).sqrt() + part * y;
-        let z = (1.0 - x * x - y * y).max(0.0).sqrt();
-        let DVec3 { x, y, z } = x * right + y * above + z * seen;
-        (width * x * across + width * y * up + z.max(0.0) * normal).try_normalize().unwrap_or(normal)
+        let chosen = facet(self.normal.to_array(), self.toward.to_array(), self.width, numbers);
+        chosen.map_or(self.normal, DVec3::from)
     }
 
     /// Returns the density of a unit direction, per unit of solid angle, if lamps are met there by aim, too; infinite
@@ -169,7 +157,7 @@ mod tests {
                 let dir = dir - 2.0 * dir.dot(normal).min(0.0) * normal;
                 chosen[0] += dir;
                 chosen[1] += dir * dir;
-                let dir = in_cone(normal, 1.0, numbers(index));
+                let dir = DVec3::from(in_cone(normal.to_array(), 1.0, numbers(index)).expect("a direction"));
                 let density: f64 = facets.toward(dir).iter().map(|(_, density)| density).sum();
                 summed[0] += 2.0 * PI * density * dir;
                 summed[1] += 2.0 * PI * density * dir * dir;

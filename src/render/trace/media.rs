@@ -53,6 +53,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let (object, _) = of.filter(|(_, side)| *side == Side::Inside)?;
             self.model.objects[object].material.medium()
         };
-        inside(left).or_else(|| inside(met)).map(|medium| medium.passed(length))
+        inside(left).or_else(|| inside(met)).map(|medium| medium.passed(length).into())
     }
 }

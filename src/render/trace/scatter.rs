@@ -189,7 +189,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if self.scratch.path_hashes.is_on {
             self.scratch.path_hashes.see_facet(camera, draw);
         }
-        let dir = by_cosine(normal, draw);
+        let dir = DVec3::from(by_cosine(normal.to_array(), draw)?);
         surface.bent_from(lane).is_none_or(|geometric| dir.dot(geometric) > 0.0).then_some(dir)
     }
 }

@@ -111,7 +111,7 @@ fn left(object: &Object) -> Rgb {
     let Some(medium) = object.material.medium() else { return Rgb::ONE };
     // A path through a box is no longer than its diagonal.
     let longest = object.shape.bounds().map_or(f64::INFINITY, |Aabb { low, high }| (high - low).length());
-    (1.0 - 1e-9) * medium.passed((1.0 + 1e-9) * longest)
+    (1.0 - 1e-9) * Rgb::from(medium.passed((1.0 + 1e-9) * longest))
 }
 
 /// Encloses the look of an object, at all of its points.
