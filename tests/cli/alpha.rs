@@ -130,11 +130,38 @@ fn what_cannot_be_transparent_is_refused_with_the_cure() {
         {
             let (status, said) = run(&folder, &["render", "a.ray", "-o", name, option]);
             assert!(status == 2 && said.contains(lacking) && said.contains(cure), "{said}");
+            let other = if name == "-" { "give `--format png`, or" } else { "name a .png or .exr file, or" };
+            assert!(said.contains(other), "{said}");
         }
     }
+    assert_eq!(run(&folder, &["render", "a.ray", "-o", "-", "--format", "png", "--alpha"]).0, 0);
     let certain = ["render", "a.ray", "-o", "a.png", "--max-error", "2", "--certain"];
     let (status, said) = run(&folder, &[&certain[..], &["--set", "eye.alpha=yes"]].concat());
     assert!(status == 2 && said.contains("cannot prove alpha"), "{said}");
     assert_eq!(run(&folder, &[&certain[..], &["--alpha"]].concat()).0, 2);
     assert!(fs::read_dir(folder.path()).expect("a folder").count() == 1, "nothing is written");
+}
+
+#[test]
+fn what_compares_and_joins_images_refuses_transparent_ones_with_the_cure() {
+    let folder = scene();
+    for name in ["c.png", "c.exr", "f-0001.png"] {
+        render(&folder, name, &["--alpha"]);
+    }
+    for arguments in [
+        &["diff", "c.png", "c.png"][..],
+        &["diff", "c.exr", "c.exr"],
+        &["grade", "a.ray", "c.png"],
+        &["film", "f.png", "--sheet", "sheet.png"],
+    ] {
+        let (status, said) = run(&folder, arguments);
+        assert!(status == 2 && said.contains("it is transparent in places"), "{said}");
+        assert!(said.contains("render it without `--alpha`"), "{said}");
+    }
+    // What fills the image is opaque.
+    for name in ["full.png", "full.exr"] {
+        let near = ["--alpha", "--set", "one.center=0 1.2 5.5", "--set", "eye.position=0 1.2 5.5"];
+        render(&folder, name, &near);
+        assert_eq!(run(&folder, &["diff", name, name]).0, 0);
+    }
 }

@@ -89,11 +89,14 @@ fn a_complete_frame_of_another_density_is_rendered_again() {
 #[test]
 fn a_format_without_a_place_for_the_density_is_refused_with_the_cure() {
     let folder = small();
-    for (name, lacking) in
-        [("a.ppm", "a PPM has no place"), ("a.pfm", "a PFM has no place"), ("-", "a PPM has no place")]
-    {
+    let named = "name a .png or .exr file";
+    for (name, lacking, cure) in [
+        ("a.ppm", "a PPM has no place", named),
+        ("a.pfm", "a PFM has no place", named),
+        ("-", "a PPM has no place", "give `--format png`"),
+    ] {
         let (status, said) = run(&folder, &["render", "a.ray", "-o", name, "--dpi", "300"]);
-        assert!(status == 2 && said.contains(lacking) && said.contains("name a .png or .exr file"), "{said}");
+        assert!(status == 2 && said.contains(lacking) && said.contains(cure), "{said}");
         assert!(!folder.path().join(name).exists());
     }
     let (_, said) = run(&folder, &["render", "a.ray", "--dpi", "0"]);

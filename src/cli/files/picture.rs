@@ -1,4 +1,4 @@
-//! Reads images, to compare them.
+//! Reads images, to compare and to join them.
 
 use crate::process::failure::Failure;
 use image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
@@ -8,11 +8,24 @@ use tabray_core::files::{self, ImageBytes};
 use tabray_core::output::full_range::{self, FullRange};
 use tabray_core::text;
 
+/// Why no command reads an image that is transparent: it would be another one before each background.
+const TRANSPARENT: &str = "it is transparent in places";
+
+/// Returns the failure of a file whose content cannot be read, with the cure of what is transparent.
+fn cannot_read(path: &Path, reason: &str) -> Failure {
+    let failure = Failure::usage(format!("cannot read `{}`: {reason}", text::shown(path)));
+    match reason == TRANSPARENT {
+        true => failure.help(
+            "render it without `--alpha` and `alpha yes`, or fill its background with a colour in an image editor",
+        ),
+        false => failure,
+    }
+}
+
 /// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
-    let cannot = |reason: String| Failure::usage(format!("cannot read `{}`: {reason}", text::shown(path)));
     let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
-    decode(&mut BufReader::new(file)).map_err(cannot)
+    decode(&mut BufReader::new(file)).map_err(|reason| cannot_read(path, &reason))
 }
 
 /// An image with bytes or with numbers of full range.
@@ -26,8 +39,6 @@ pub enum Picture {
 impl Picture {
     /// Reads the image in a file.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let cannot =
-            |reason: String| Failure::usage(format!("cannot read `{}`: {reason}", text::shown(path)));
         let Some(format) = FullRange::of(path) else { return read(path).map(Self::Bytes) };
         let file = files::open(path).map_err(|error| Failure::cannot_read(path, &error))?;
         let file: &mut dyn ImageBytes = &mut BufReader::new(file);
@@ -38,10 +49,15 @@ impl Picture {
             }),
             FullRange::Exr => ImageReader::with_format(file, ImageFormat::OpenExr)
                 .decode()
-                .map(DynamicImage::into_rgb32f)
-                .map_err(|error| text::picture_reason(&error)),
+                .map_err(|error| text::picture_reason(&error))
+                .and_then(|picture| match picture {
+                    DynamicImage::ImageRgba32F(picture) if picture.pixels().any(|pixel| pixel[3] != 1.0) => {
+                        Err(TRANSPARENT.to_owned())
+                    }
+                    picture => Ok(picture.into_rgb32f()),
+                }),
         };
-        picture.map(Self::FullRange).map_err(cannot)
+        picture.map(Self::FullRange).map_err(|reason| cannot_read(path, &reason))
     }
 
     /// Returns the numbers, where 1 is white.
@@ -65,15 +81,11 @@ impl Picture {
 pub fn decode(bytes: &mut dyn ImageBytes) -> Result<RgbImage, String> {
     let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| text::reason(&error))?;
     let picture = reader.decode().map_err(|error| text::picture_reason(&error))?;
-    let is_plain = match &picture {
+    let is_opaque = match &picture {
         DynamicImage::ImageLuma8(_) | DynamicImage::ImageRgb8(_) => true,
         DynamicImage::ImageLumaA8(picture) => picture.pixels().all(|pixel| pixel[1] == u8::MAX),
         DynamicImage::ImageRgba8(picture) => picture.pixels().all(|pixel| pixel[3] == u8::MAX),
-        _ => false,
+        _ => return Err("it does not have 8 bits per channel, and no other bytes can be read".to_owned()),
     };
-    if is_plain {
-        Ok(picture.into_rgb8())
-    } else {
-        Err("it is not an opaque image with 8 bits per channel, and no other kind can be compared".to_owned())
-    }
+    if is_opaque { Ok(picture.into_rgb8()) } else { Err(TRANSPARENT.to_owned()) }
 }

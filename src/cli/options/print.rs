@@ -34,7 +34,7 @@ impl Args {
                 "`{}` cannot record `--dpi`: {lacking} has no place for it",
                 shown(path)
             ))
-            .help("name a .png or .exr file, or leave out the option")),
+            .help(format!("{}, or leave out the option", other(path)))),
         }
     }
 
@@ -63,7 +63,7 @@ impl Args {
                 "`{}` cannot be transparent: {lacking} has no alpha",
                 shown(path)
             ))
-            .help(format!("name a .png or .exr file, or {without}"))),
+            .help(format!("{}, or {without}", other(path)))),
         }
     }
 }
@@ -76,4 +76,9 @@ fn lacking((bytes, full_range): (Format, Option<FullRange>)) -> Option<&'static 
         None if bytes == Format::Ppm => Some("a PPM"),
         None => None,
     }
+}
+
+/// Says how to write a format that records more. Standard output has no name that tells it.
+fn other(path: &Path) -> &'static str {
+    if path == Path::new("-") { "give `--format png`" } else { "name a .png or .exr file" }
 }
