@@ -197,6 +197,20 @@ fn hits_where_a_surface_closes_are_proven() {
     assert!(hits >= 199, "{hits} of 200");
 }
 
+/// In the middle of this surface, where it comes back, a step of u does not move.
+#[test]
+fn a_surface_that_comes_back_from_an_edge_is_hit_on_its_nearer_sheet() {
+    let model = scene("parametric p { material m x \"u^2\" y v z \"u^3\" u -1 1 v -1 1 }");
+    let shape = &model.objects[0].shape;
+    let mut dice = Dice(Pcg64::new(2, 7));
+    for _ in 0..200 {
+        let (x, y) = (dice.range(0.001, 0.999), dice.range(-0.999, 0.999));
+        let ray = Ray { origin: DVec3::new(x, y, 5.0), dir: DVec3::NEG_Z };
+        let found = shape.distance(&ray, &RayRange::ALL);
+        assert!((found - (5.0 - x * x.sqrt())).abs() < 1e-13, "{ray:?}: {found}");
+    }
+}
+
 #[test]
 fn a_tube_around_a_circle_is_a_torus() {
     let own = scene("tube t { material m x \"cos(t)\" y 0 z \"sin(t)\" t 0 6.283185307179586 radius 0.4 }");

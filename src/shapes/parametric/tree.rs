@@ -174,9 +174,22 @@ fn around(patches: &dyn Patches, part: &Rectangle<f64>) -> (Aabb, Flat) {
 
 /// Returns the halves of a part, cut across its longer side on the surface.
 pub(super) fn halves(patches: &dyn Patches, part: Rectangle<f64>) -> [Rectangle<f64>; 2] {
-    let [_, along_u, along_v] = patches.at(part.map(|side| side.middle()));
-    let axis = usize::from(along_v.length() * part[1].width() > along_u.length() * part[0].width());
-    let (mut one, mut other, middle) = (part, part, part[axis].middle());
-    (one[axis].high, other[axis].low) = (middle, middle);
+    let middle = part.map(|side| side.middle());
+    let at_middle = patches.at(middle);
+    let length = |axis: usize| {
+        let along = match at_middle[1 + axis] {
+            // The surface may stand still in the middle alone, as at an edge from which it comes back.
+            DVec3::ZERO => {
+                let mut beside = middle;
+                beside[axis] = 0.5 * (part[axis].low + middle[axis]);
+                patches.at(beside)[1 + axis]
+            }
+            along => along,
+        };
+        along.length() * part[axis].width()
+    };
+    let axis = usize::from(length(1) > length(0));
+    let (mut one, mut other) = (part, part);
+    (one[axis].high, other[axis].low) = (middle[axis], middle[axis]);
     [one, other]
 }
