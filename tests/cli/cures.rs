@@ -80,6 +80,7 @@ fn a_loop_of_another_language_is_told_as_the_repeat_that_it_means() {
         ("for i = 1 to 10", "write `repeat i 10 {`; in its braces, `\"i + 1\"` goes from 1 to 10"),
         ("while i < 3", "write `repeat i 3 {`; in its braces, `\"i\"` goes from 0 to 2"),
         ("loop 5 times", "write `repeat i 5 {`; in its braces, `\"i\"` goes from 0 to 4"),
+        ("for x 1 10", "write `repeat i 9 {`; in its braces, `\"i + 1\"` goes from 1 to 9"),
         ("repeat i in 5", "write `repeat i 5 {`; in its braces, `\"i\"` goes from 0 to 4"),
         ("repeat 5 times", "write `repeat i 5 {`; in its braces, `\"i\"` goes from 0 to 4"),
         ("for i in range(0, 10, 2)", "write `repeat NAME COUNT { ENTITIES }`"),

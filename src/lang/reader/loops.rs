@@ -1,5 +1,7 @@
 //! Loops of other languages, and the `repeat` that each means.
 
+use tabray_exact::formula::is_taken;
+
 /// The words that begin a loop.
 const LOOPS: [&str; 6] = ["repeat", "for", "foreach", "loop", "while", "do"];
 
@@ -57,6 +59,8 @@ pub fn run(head: &str) -> Option<Run<'_>> {
     if names.any(|other| other != name) {
         return None;
     }
+    // What has a meaning in formulas cannot be the name of a number.
+    let name = if is_taken(name) { "i" } else { name };
     let numbers = words().filter(|word| word.starts_with(|letter: char| letter.is_ascii_digit()));
     let numbers = numbers.map(|word| word.parse().ok()).collect::<Option<Vec<u32>>>()?;
     let (first, end) = match numbers[..] {
@@ -93,6 +97,7 @@ mod tests {
             (" i in 0..10 ", Some(("i", 0, 10))),
             (" i < 10 ", Some(("i", 0, 10))),
             (" 5 times ", Some(("i", 0, 5))),
+            (" x 1 10 ", Some(("i", 1, 9))),
             (" i in range(0, 10, 2) ", None),
             (" (i = 10; i > 0; i--) ", None),
             (" (x = 0; x < 8; x += 2) ", None),
