@@ -51,8 +51,8 @@ pub struct LightSample {
     pub light: Rgb,
 }
 
-/// The points of a light, for proofs of its contribution. The light's
-/// [`enclose`](crate::light::Light::enclose) returns its radiance at them.
+/// The points of a light, for proofs of its contribution. Its radiance at them is what it has
+/// [sent](crate::light::Light::sent).
 #[derive(Clone, Copy)]
 pub enum Extent<'e> {
     /// The points of a flat panel, chosen by [`Panel::sample`].
