@@ -55,7 +55,7 @@ impl Image {
     /// checkpoint is refused.
     pub fn resume(&self, file: File) -> Option<(Vec<[u8; 3]>, Vec<bool>)> {
         let mut begun = ResumedImage::read(PathBuf::new(), Ok(file), &self.label).ok()?;
-        let band = Band::blank(self.part.columns.clone(), self.part.rows.clone());
+        let band = Band::blank(self.part.columns.clone(), self.part.rows.clone(), false);
         begun.fill(&band, 0).ok()?;
         let (mut pixels, mut tiles) = (Vec::new(), Vec::new());
         for index in 0..band.strips.len() {
