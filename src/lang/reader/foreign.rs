@@ -132,10 +132,15 @@ impl Cleaned {
     /// Replaces comments that begin with `//` or `/*`, where a word could begin, by white space.
     fn comments(&mut self) {
         let text = self.text();
-        let (mut at, mut may_begin) = (0, true);
+        let end_of_line = |at: usize| text[at..].find('\n').map_or(text.len(), |length| at + length);
+        let (mut at, mut end, mut may_begin) = (0, end_of_line(0), true);
         while let Some(letter) = text[at..].chars().next() {
             let rest = &text[at..];
-            let line = rest.find('\n').unwrap_or(rest.len());
+            // Looked for once in each line.
+            if at > end {
+                end = end_of_line(at);
+            }
+            let line = end - at;
             let (length, is_foreign) = match letter {
                 '#' if may_begin => (line, false),
                 '"' if may_begin => (rest[1..line.max(1)].find('"').map_or(1, |end| end + 2), false),
