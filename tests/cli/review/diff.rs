@@ -51,7 +51,7 @@ fn trouble_is_no_difference() {
         (&["nothing.png"][..], "cannot read `nothing.png`"),
         (&["text.png"], "cannot read `text.png`"),
         (&["deep.png"], "8 bits per channel"),
-        (&["clear.png"], "opaque"),
+        (&["clear.png"], "`clear.png`: it is transparent in places"),
         (&["tall.png"], "`old.png` has 4 x 3 pixels, and `tall.png` has 4 x 4 pixels"),
         (&["new.ppm", "-o", "new.ppm"], "end it in .html"),
         (&["new.ppm", "-o", "no/page.html"], "cannot write `no/page.html`"),
