@@ -482,8 +482,14 @@ fn a_chart_ends_near_its_time_limit_and_shows_what_it_has() {
     let args = ["chart", "flange.ray", "-o", ".", "--time-limit", "1ms"];
     let output = chart.current_dir(folder.path()).args(args).output().expect("it runs");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("the time limit has been reached, and nothing is measured yet"), "{said}");
+    // While the scene is read, as most often, or later.
+    match output.status.code() {
+        Some(130) => assert_eq!(said, "the time limit of 1ms has been reached\n"),
+        code => {
+            assert_eq!(code, Some(1), "{said}");
+            assert!(said.contains("the time limit has been reached, and nothing is measured yet"), "{said}");
+        }
+    }
 }
 
 #[test]
