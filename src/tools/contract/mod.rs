@@ -387,6 +387,6 @@ mod tests {
     fn a_light_that_says_it_is_even_and_is_not_is_found() {
         let fault = looks::light(&Uneven, &mut Draw::new("uneven")).expect_err("a fault");
         assert_eq!(fault.promise, Promise::PacketsAgree);
-        assert_eq!(fault.found, "`uniform` is [1, 1, 1], and toward [0, 0, 0] it emits None");
+        assert_eq!(fault.found, "`uniform` is [1, 1, 1], and toward [0, 0, 0] it emits [0, 0, 0]");
     }
 }
