@@ -80,8 +80,9 @@ pub trait Number: Scalar {
     /// Returns the least and the greatest whole number at most this number.
     fn floors(self) -> [f64; 2];
 
-    /// Returns what a function returns for the whole numbers at most these two. Each channel is from 0 to `most`; where
-    /// there are many such numbers, that is all that is known.
+    /// Returns what a function of the whole numbers at most these two returns; it is given plain numbers as they are, and
+    /// drops their fractions itself. Each channel is from 0 to `most`; where there are many such numbers, that is all that
+    /// is known.
     fn table(at: [Self; 2], most: impl Fn() -> f64, of: impl Fn([f64; 2]) -> Rgb) -> [Self; 3] {
         let [columns, rows] = at.map(Self::floors);
         let are_few = |[low, high]: [f64; 2]| high - low < MAX_TEXELS as f64;
@@ -154,7 +155,7 @@ impl Number for f64 {
 
     #[inline(always)]
     fn table(at: [Self; 2], _most: impl Fn() -> f64, of: impl Fn([f64; 2]) -> Rgb) -> [Self; 3] {
-        constants(of([at[0].floor(), at[1].floor()]))
+        constants(of(at))
     }
 }
 
