@@ -11,8 +11,7 @@ use crate::plan::lamps;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{constants, dot, per_axis};
 use tabray_world::geometry::sight::Line;
-use tabray_world::interface::Crossing;
-use tabray_world::interface::{Interface, Medium};
+use tabray_world::interface::{Crossing, Interface, Medium};
 use tabray_world::rules::{self, Rules};
 use tabray_world::scene::model::Object;
 
