@@ -33,6 +33,12 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
         ReadOptions { by_default: Accuracy::Classic, may_share_names: true, ..ReadOptions::default() };
     let source = Source::read(standard, &set::Args::default())?;
     let Loaded { model, warnings, .. } = source.load_by(registry, chosen).map_err(Failure::Scene)?;
+    if model.camera.value.alpha {
+        return Err(Failure::usage("the image on standard output is a PPM, which cannot be transparent")
+            .help(
+                "`tabray render SCENE -o image.png` makes the transparent image; or leave out `alpha yes`",
+            ));
+    }
     interrupt::catch(InterruptAction::Exit("the image was not finished"))?;
     let _ = write!(std::io::stderr(), "{}", visible_lines(&dump::notes(&model)));
     // The dump comes first, as the course's logs have it.

@@ -165,3 +165,16 @@ fn what_compares_and_joins_images_refuses_transparent_ones_with_the_cure() {
         assert_eq!(run(&folder, &["diff", name, name]).0, 0);
     }
 }
+
+/// The notes' program has no other format.
+#[test]
+fn a_transparent_scene_on_standard_input_is_refused_with_the_cure() {
+    let folder = folder();
+    let scene = SCENE.replace("samples 16", "samples 16  alpha yes");
+    let (status, out, said) = outcome(tabray(&folder).write_stdin(scene));
+    assert_eq!((status, out.len()), (2, 0), "{said}");
+    assert!(
+        said.contains("cannot be transparent") && said.contains("tabray render SCENE -o image.png"),
+        "{said}"
+    );
+}
