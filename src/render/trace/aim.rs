@@ -120,7 +120,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let Some(trees) = &self.scratch.trees else { return };
         for Aimed { lane, sample: LightSample { toward, light, .. }, density } in &aimed {
             let lane = *lane;
-            let before = &trees.wave[group.places[lane] as usize];
+            let before = &trees.wave.rays[group.places[lane] as usize];
             if before.bounces < plan.camera.bounces && (before.depth as usize) < plan.max_depth {
                 let cosine = toward.dot(surface.normals.get(lane));
                 let passed = surface.passed_by_coat(material, lane, group.dir.get(lane), *toward);
@@ -206,7 +206,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let place = group.places.get(lane.min(group.len - 1));
         let trees = self.scratch.trees.as_ref().filter(|_| self.depth != 0);
         let Some((trees, place)) = trees.zip(place) else { return 1.0 };
-        let OpenRay { density: by_chance, chosen, since, .. } = trees.wave[*place as usize];
+        let OpenRay { density: by_chance, chosen, since, .. } = trees.wave.rays[*place as usize];
         if by_chance == f64::INFINITY {
             return 1.0;
         }

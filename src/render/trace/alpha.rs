@@ -28,7 +28,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let (clear, weight) = match &self.scratch.trees {
                 _ if self.depth == 0 => (1.0, Rgb::ONE),
                 Some(trees) if self.plan.camera.rules == Rules::Free => {
-                    let OpenRay { clear, weight, .. } = trees.wave[group.places[lane] as usize];
+                    let OpenRay { clear, weight, .. } = trees.wave.rays[group.places[lane] as usize];
                     (clear, weight)
                 }
                 // Rays that continue under the notes' rules come from objects that cover all.

@@ -36,7 +36,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let camera = group.camera[lane.min(group.len - 1)];
             let Some(sample) = self.scratch.samples.get(usize::from(camera)) else { continue };
             let depth = match (group.places.get(lane), &self.scratch.trees) {
-                (Some(place), Some(trees)) => trees.wave[*place as usize].depth,
+                (Some(place), Some(trees)) => trees.wave.rays[*place as usize].depth,
                 _ => self.depth as u32,
             };
             let draw = if self.scratch.are_probes {

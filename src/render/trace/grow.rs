@@ -5,7 +5,7 @@ use super::context::{ShadingScratch, Tracer};
 use super::ray_group::RayGroup;
 use super::scatter::CountedLight;
 use super::tree::{Budget, End, Ends, OpenRay, Tree};
-use super::wave::TreeScratch;
+use super::wave::{TreeScratch, Wave};
 use crate::limits::MAX_RAYS;
 use crate::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
 use crate::plan::depth::Depth;
@@ -46,7 +46,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let mut scratch = self.scratch.trees.take().unwrap_or_default();
         scratch.swap_primary();
         // Where no ray continues, the colour is known.
-        let goes_on = |lane: &u8| scratch.primary.1[usize::from(*lane)].onward.iter().any(Option::is_some);
+        let goes_on = |lane: &u8| !scratch.primary.outcomes[usize::from(*lane)].onward.is_empty();
         let mut lanes = take(&mut scratch.lanes);
         lanes.clear();
         lanes.extend((0..len).map(|lane| lane as u8).filter(goes_on));
@@ -54,23 +54,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let TreeScratch { trees, numbers, primary, wave, .. } = &mut *scratch;
             trees.resize_with(trees.len().max(lanes.len()), Tree::default);
             numbers.resize(len.max(numbers.len()), 0);
-            wave.clear();
+            wave.rays.clear();
             for ((tree, lane), number) in trees.iter_mut().zip(lanes).zip(0..) {
                 let lane = usize::from(*lane);
                 numbers[lane] = number;
-                let outcome = &mut primary.1[lane];
+                let outcome = &mut primary.outcomes[lane];
                 outcome.light = colours.get(lane);
                 outcome.cost = MAX_RAYS as u32 - group.ray_budget[lane];
                 tree.begin(budgets[lane]);
-                tree.add(outcome, depth, &ends);
-                tree.next(&ends, depth, wave);
+                primary.add(lane, tree, depth, &ends);
+                tree.next(&ends, depth, &mut wave.rays);
             }
-            while !scratch.wave.is_empty() {
+            while !scratch.wave.rays.is_empty() {
                 scratch = self.follow(scratch);
                 scratch.add(depth, &ends);
                 let TreeScratch { trees, wave, .. } = &mut *scratch;
-                wave.clear();
-                trees[..lanes.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, wave));
+                wave.rays.clear();
+                trees[..lanes.len()].iter_mut().for_each(|tree| tree.next(&ends, depth, &mut wave.rays));
             }
             for (tree, lane) in scratch.trees.iter().zip(lanes) {
                 let (End { colour, apart }, lane) = (tree.end(&ends), usize::from(*lane));
@@ -91,15 +91,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Follows the rays of a wave.
     fn follow(&mut self, mut scratch: Box<TreeScratch>) -> Box<TreeScratch> {
-        scratch.begin_wave();
+        scratch.wave.begin(scratch.wave.rays.len());
         let (mut group, mut seen) = (take(&mut scratch.group), take(&mut scratch.seen));
         let mut order = take(&mut scratch.order);
         order.clear();
-        order.extend(0..scratch.wave.len() as u32);
+        order.extend(0..scratch.wave.rays.len() as u32);
         // The hits of rays of little weight are not recorded, as another sample's tree may have ended before them.
         let records = self.scratch.path_hashes.is_on;
         let kind = |place: u32| {
-            let OpenRay { object, weight, counted, .. } = scratch.wave[place as usize];
+            let OpenRay { object, weight, counted, .. } = scratch.wave.rays[place as usize];
             (object, counted, records && weight.abs().max_element() >= HEAVY)
         };
         order.sort_by_key(|place| kind(*place));
@@ -118,7 +118,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let count = group.padded();
             let shape = &self.model.objects[object as usize].shape;
             group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);
-            self.begin_open(&scratch.wave, places);
+            self.begin_open(&scratch.wave.rays, places);
             self.scratch.trees = Some(scratch);
             self.counted = counted;
             self.trace(&mut group, &mut seen);
@@ -170,6 +170,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             return;
         }
         let Some(mut scratch) = self.scratch.trees.take() else { return };
+        let Wave { rays, outcomes, onward: continued } = &mut scratch.wave;
         let aims = self.aims();
         let (count, kept, is_flat) = (group.padded(), 1.0 - transparency, object.is_flat_mirror());
         let crossings = object.material.interface.as_deref();
@@ -194,7 +195,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             };
             colours.set(lane, kept * colours.get(lane));
             let place = group.places[lane] as usize;
-            let before = scratch.wave[place];
+            let before = &rays[place];
             if before.depth as usize >= self.plan.max_depth {
                 continue;
             }
@@ -250,19 +251,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     open(covered * kept * passed * diffuse.get(lane), dir, side, RayKind::Scattered)
                 })
                 .map(|ray| OpenRay { bounces: before.bounces + 1, ..ray });
-            let rays = &mut scratch.outcomes[place].onward;
-            rays[0] = onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted));
-            rays[1] = open(covered * reflected, dir.get(lane), side, RayKind::Reflected);
-            if !covers_all {
-                rays[3] = open(beyond, group.dir.get(lane), side.opposite(), RayKind::Transmitted);
-            }
+            let mut past = match covers_all {
+                true => None,
+                false => open(beyond, group.dir.get(lane), side.opposite(), RayKind::Transmitted),
+            };
+            let mut through =
+                onward.and_then(|dir| open(through, dir, side.opposite(), RayKind::Transmitted));
             // What is not covered goes on alone, or with what is transmitted unbent.
-            let past = if crossings.is_some() { 3 } else { 0 };
-            rays[past].iter_mut().for_each(|ray| ray.clear = clear);
+            let uncovered = if crossings.is_some() { &mut past } else { &mut through };
+            uncovered.iter_mut().for_each(|ray| ray.clear = clear);
+            let reflected = open(covered * reflected, dir.get(lane), side, RayKind::Reflected);
+            let mut branches = [through, reflected, scattered, past];
             if self.plan.camera.bounces != 0 {
-                rays[2] = scattered;
-                self.choose(&before, rays);
+                self.choose(before, &mut branches);
             }
+            let first = continued.len();
+            continued.extend(branches.into_iter().flatten());
+            outcomes[place].onward = first..continued.len();
         }
         self.scratch.trees = Some(scratch);
     }

@@ -188,7 +188,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let open = self.scratch.trees.as_ref().filter(|_| self.depth != 0);
         let are_shown = |lane: usize| match open {
             None => self.depth == 0,
-            Some(trees) => trees.wave[group.places[lane.min(group.len - 1)] as usize].shows_patches,
+            Some(trees) => trees.wave.rays[group.places[lane.min(group.len - 1)] as usize].shows_patches,
         };
         let patches =
             window.map(|window| SeenPatches { dir: group.dir.view(count), window, are_shown: &are_shown });

@@ -208,14 +208,14 @@ impl Surface {
     }
 
     /// Returns an open ray of a tree that continues another ray from a point.
-    pub fn open_ray(&self, lane: usize, before: OpenRay) -> OpenRay {
+    pub fn open_ray(&self, lane: usize, before: &OpenRay) -> OpenRay {
         OpenRay {
             origin: self.points.get(lane),
             travelled: self.travelled[lane],
             cosine: self.cosines[lane],
             object: self.index as u32,
             depth: before.depth + 1,
-            ..before
+            ..*before
         }
     }
 

@@ -248,11 +248,11 @@ impl Tree {
         *self = Self { budget, open: take(&mut self.open), ..Self::default() };
     }
 
-    /// Adds what was found at the hit of one of its rays.
-    pub fn add(&mut self, Outcome { light, cost, onward }: &Outcome, depth: &Depth, ends: &Ends) {
-        self.found += *light;
-        self.work += cost;
-        onward.iter().flatten().for_each(|ray| self.push(*ray, depth, ends));
+    /// Adds what was found at the hit of one of its rays, and the rays that continue from there.
+    pub fn add(&mut self, outcome: &Outcome, onward: &[OpenRay], depth: &Depth, ends: &Ends) {
+        self.found += outcome.light;
+        self.work += outcome.cost;
+        onward.iter().for_each(|ray| self.push(*ray, depth, ends));
     }
 
     /// Adds an open ray. One that is too faint is not followed.

@@ -91,30 +91,23 @@ kernels! {
         let (count, middle) = (shading.points.len(), light.location());
         let (toward, emissivity) = (toward.first(count), emissivity.first(count));
         let out = LightSamples { toward, emissivity, strengths, t_max, shines };
-        let free = |cosine, inverse| Rules::Free.received(cosine, inverse);
-        let notes = |cosine, inverse| Rules::Notes.received(cosine, inverse);
-        match (shading.rules, shading.lights) {
-            (Rules::Notes, None) => sample_each(light, shading, |_| middle, notes, out),
-            (Rules::Notes, Some(lights)) => {
+        // Each is a loop of its own: one that asks in every lane is not vectorized.
+        match shading.lights {
+            None => sample_each(light, shading, |_| middle, out),
+            Some(lights) => {
                 let lights = lights.first(count);
-                sample_each(light, shading, |lane| lights.get(lane), notes, out)
-            }
-            (Rules::Free, lights) => {
-                let place = |lane| lights.map_or(middle, |lights| lights.get(lane));
-                sample_each(light, shading, place, free, out)
+                sample_each(light, shading, |lane| lights.get(lane), out)
             }
         }
     }
 }
 
-/// Samples a light from many points. `place` returns the point of the light that a lane sees, and `received` the
-/// factor of the light from the cosine of its angle and the reciprocal of its distance.
+/// Samples a light from many points. `place` returns the point of the light that a lane sees.
 #[inline(always)]
 fn sample_each<T: Light>(
     light: &T,
     shading: &ShadingPoints,
     place: impl Fn(usize) -> DVec3,
-    received: impl Fn(f64, f64) -> f64,
     out: LightSamples,
 ) -> AnyLit {
     let LightSamples { mut toward, mut emissivity, strengths, t_max, shines } = out;
@@ -138,7 +131,7 @@ fn sample_each<T: Light>(
         if !is_uniform {
             emissivity.set(lane, sent);
         }
-        strengths[lane] = received(cosine, inverse);
+        strengths[lane] = shading.rules.received(cosine, inverse);
         t_max[lane] = if does_shine != 0 { ray_end } else { 0.0 };
         shines[lane] = does_shine;
         any_faces |= faces;
