@@ -154,3 +154,32 @@ fn choose_measures_one_sample_under_a_sky_that_lights() {
         assert!(matches!(status, 0 | 1) && !err.contains("internal error"), "{err}");
     }
 }
+
+#[test]
+fn choose_says_in_how_many_pixels_samples_may_have_missed_something() {
+    let folder = folder();
+    let scene = |lamp: &str| {
+        let text = format!(
+            "look_at eye {{ pixeldim 32 24 position 0 1 6 target 0 0.7 0 angle 45 }}
+             material grey {{ ambient 0.3 0.3 0.3 }}
+             material bright {{ ambient {lamp} {lamp} {lamp} }}
+             plane floor {{ material grey normal 0 1 0 point 0 0 0 }}
+             sphere lamp {{ material bright center 0.3 0.9 0 radius 0.004 }}"
+        );
+        fs::write(folder.path().join("lamp.ray"), text).expect("a file");
+    };
+    let says = |options: &[&str]| {
+        let (status, out, err) = outcome(tabray(&folder).args(["choose", "lamp.ray"]).args(options));
+        assert_eq!(status, 0, "{err}");
+        String::from_utf8(out).expect("text")
+    };
+    let missed = "samples may have missed something bright and small";
+    scene("300");
+    let said = says(&["--max-error", "60"]);
+    assert!(said.contains(&format!("In 1 of 768 pixels, {missed}.")), "{said}");
+    let said = says(&["--max-error", "60", "--certain"]);
+    assert!(said.contains(&format!("In 1 of 768 pixels, {missed}; bounds include it.")), "{said}");
+    scene("0.5");
+    let said = says(&["--max-error", "60"]);
+    assert!(!said.contains(missed), "{said}");
+}

@@ -185,7 +185,9 @@ impl<'e> Selection<'e> {
                 {
                     let Small { pixels, missed, .. } = self.estimates.small;
                     format!(
-                        "no promise: {pixels} pixels may show things smaller than a sample, and missing these may add {}",
+                        "no promise: in {pixels} of {} pixels, samples may have missed something bright and small, which \
+                         may add {} to the error",
+                        self.estimates.pixels,
                         levels(missed)
                     )
                 }
@@ -238,16 +240,15 @@ impl<'e> Selection<'e> {
         };
         let small = match small.pixels {
             0 if small.is_left_out => {
-                " Things smaller than a sample may be in most pixels: none was looked for, and samples may have missed \
-                 them; `--certain` looks."
+                " Most pixels may show something bright and small that samples have missed; `--certain` looks for it."
                     .to_owned()
             }
             0 => String::new(),
-            pixels if self.is_certain => format!(
-                " {pixels} pixels may show things smaller than a sample; bounds include what these may have missed."
-            ),
             pixels => {
-                format!(" {pixels} pixels may show things smaller than a sample, which none may have met.")
+                let missed = if self.is_certain { "; bounds include it" } else { "" };
+                format!(
+                    " In {pixels} of {all} pixels, samples may have missed something bright and small{missed}."
+                )
             }
         };
         let short = if is_short { "; there was no time for more" } else { "" };
