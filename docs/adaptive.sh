@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What adaptive numbers of samples cost and how wrong they are: the tables behind docs/errors.md, printed in Markdown, and
+# What adaptive numbers of samples cost and how wrong they are: the tables behind docs/accuracy.md, printed in Markdown, and
 # a chart, docs/charts/adaptive.svg.
 #
 #     bash docs/adaptive.sh [rms|limits|povray]

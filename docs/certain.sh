@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What `render --max-error --certain` proves, whether 4096 samples contradict it, and what it costs: the table of
-# docs/errors.md, printed in Markdown.
+# docs/accuracy.md, printed in Markdown.
 #
 #     bash docs/certain.sh
 #

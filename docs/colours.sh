@@ -1,5 +1,5 @@
 #!/bin/bash
-# Proves the colours of all scenes, with one sample a pixel, and prints a table, whose sums are in errors.md.
+# Proves the colours of all scenes, with one sample a pixel, and prints a table, whose sums are in accuracy.md.
 # Usage: docs/colours.sh [PROGRAM]
 cd "$(dirname "$0")/.." || exit 1
 program=${1:-target/release/tabray}

@@ -58,7 +58,7 @@ fn the_pictures_of_the_docs_are_fresh() {
         let part = imageops::crop_imm(&shown, 0, top, width, rows).to_image();
         let is_fresh = camera.pixels == [width as usize, height as usize]
             && part_of(&scene, &format!("0,{},{width},{rows}", height - rows - top)) == part;
-        assert!(is_fresh, "{} is stale: docs/gallery.md says how to make it", picture.display());
+        assert!(is_fresh, "{} is stale: CONTRIBUTING.md says how to make it", picture.display());
     }
 }
 

@@ -28,7 +28,7 @@ pub struct Args {
     #[arg(long, value_name = "N|MIN..MAX", value_parser = samples)]
     samples: Option<Samples>,
     /// Take as many samples in each pixel as it needs for this error, such as `2` (levels of 255) or `0.5%` (of white).
-    /// The error is estimated, not proven: in the scenes of docs/errors.md, 98 to 100 % of the pixels kept the limit.
+    /// The error is estimated, not proven: in the scenes of docs/accuracy.md, 98 to 100 % of the pixels kept the limit.
     /// Takes 4 to 4096 samples unless --samples gives other limits; at first more than 4 where the error of the image,
     /// measured on some pixels, would be larger
     #[arg(long, value_name = "LEVELS|PERCENT%", allow_negative_numbers = true)]
