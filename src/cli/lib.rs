@@ -153,7 +153,7 @@ fn chosen() -> ExitCode {
     match chosen {
         Some((command, matches)) => command.run(registry, matches),
         None if io::stdin().is_terminal() => {
-            let _ = write!(io::stderr(), "{}", line().render_long_help());
+            let _ = write!(io::stderr(), "{}", help::on_one_screen(line()).render_help());
             report(&Failure::AlreadyReported)
         }
         None => notes::run(registry).exit_code(),

@@ -14,7 +14,7 @@ use tabray_lang::reference;
 use tabray_lang::registry::Registry;
 use tabray_lang::syntax::Syntax;
 
-/// List the entity types, the attributes of one type, or the contents of a mesh file
+/// List the entity types, the attributes of one, or what a mesh has
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {

@@ -1,7 +1,7 @@
 //! Parses the command line. If that fails, the message says what the user probably meant.
 
 use crate::process::failure::Failure;
-use crate::process::{color, program};
+use crate::process::{color, help, program};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgMatches, Command};
 use std::ffi::OsString;
@@ -14,9 +14,12 @@ use tabray_lang::syntax::Syntax;
 /// Parses the program's arguments. What is wrong with them is printed, and ends the program; so do `--help` and
 /// `--version`.
 pub fn matches(command: Command) -> Result<ArgMatches, Failure> {
+    let words: Vec<_> = wild::args_os().collect();
+    let is_first_help = words.len() == 2 && ["help", "-h"].iter().any(|word| words[1] == *word);
+    let command = if is_first_help { help::on_one_screen(command) } else { command };
     // It is never freed: to free all that it says of each option takes a tenth of the start of the program.
     let command = Box::leak(Box::new(command));
-    let words = joined(command, wild::args_os().collect());
+    let words = joined(command, words);
     color::choose_early(&words);
     let mut error = match command.try_get_matches_from_mut(&words) {
         Ok(matches) => return Ok(matches),

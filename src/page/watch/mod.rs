@@ -42,7 +42,7 @@ const LOOK: Duration = Duration::from_secs(1);
 /// The time in which the program ends by itself when it is interrupted.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Show the image in the browser, and render it again whenever the scene changes
+/// Show the image in the browser, and again after each change
 ///
 /// Unless `--host` says otherwise, only this machine can reach the page, and only at the printed address. The address
 /// contains a token, new for each run, that keeps other users out. Click a pixel to see how it gets its colour. For
