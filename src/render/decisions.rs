@@ -208,7 +208,8 @@ fn depth(model: &Model, depth: &Depth) -> String {
         return free_depth(model, depth);
     }
     let ends = format!(
-        "when its path is {MAX_DIST} units long, or when a ray budget of {MAX_RAYS} for each primary ray is used up"
+        "when its path is {MAX_DIST} units long, or when all rays that follow from one of the viewer's have taken the work \
+         of {MAX_RAYS} simple ones (a lower `specular` or `transparency` ends them sooner)"
     );
     let bound = || {
         let rest = if model.background.is_some() { ", except that of the background" } else { "" };

@@ -368,7 +368,10 @@ fn a_plan_says_how_deep_rays_are_followed() {
     let depth = |entities: &str| line(&counted(entities).0, "depth");
     assert!(!text(&counted(FLOOR).0).contains("depth "), "no ray goes on");
     let bounded = depth(pane);
-    assert!(bounded.contains("1/1024 of a level") && bounded.contains("a ray budget of 20000"), "{bounded}");
+    assert!(
+        bounded.contains("1/1024 of a level") && bounded.contains("the work of 20000 simple ones"),
+        "{bounded}"
+    );
     let mirrors = format!(
         "{FLOOR} material all {{ specular 1 }} plane a {{ material all normal 0 0 1 point 0 0 -4 }}
         plane b {{ material all normal 0 1 0 point 0 9 0 }}"

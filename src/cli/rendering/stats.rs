@@ -21,8 +21,8 @@ use tabray_tools::unchecked;
 #[group(id = "statistics")]
 #[command(next_help_heading = "Looking inside")]
 pub struct Args {
-    /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that used up their
-    /// ray budget or could not be decided, tests by entity type, the time of each stage and the peak memory
+    /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that were not
+    /// finished or could not be decided, tests by entity type, the time of each stage and the peak memory
     #[arg(long, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
     stats: Option<Format>,
 }

@@ -245,12 +245,13 @@ impl<W: Write> Probe<'_, W> {
                 "the rays that are left can change the pixel by less than 1/16 of a level, and count with their mean"
                     .to_owned()
             }
-            (DropReason::TooMany, false) => {
-                format!("the ray budget of {MAX_RAYS} is used up, and no more rays are followed")
+            (DropReason::TooMany, is_free) => {
+                let count = if is_free { format!("are {MAX_TREE}, or ") } else { String::new() };
+                format!(
+                    "the rays of this pixel {count}have taken the work of {MAX_RAYS} simple ones, and no more are \
+                     followed: a lower `specular` or `transparency` ends them sooner"
+                )
             }
-            (DropReason::TooMany, true) => format!(
-                "the budget of {MAX_TREE} rays, or of the work of {MAX_RAYS} simple ones, is used up, and no more rays are followed"
-            ),
         }
     }
 
