@@ -1,10 +1,12 @@
 //! The numbers of a scene's entities, as a page offers them to be changed.
 
 use super::Shown;
+use super::trial_values::given;
 use serde::Serialize;
 use std::borrow::Cow;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::trace;
+use tabray_core::scene::COLOUR;
 use tabray_core::scene::attribute::Attribute;
 use tabray_core::scene::model::Model;
 use tabray_core::scene::store::Record;
@@ -36,6 +38,9 @@ pub struct Fields {
 pub(super) struct Field {
     /// The name in the scene language.
     pub name: Cow<'static, str>,
+    /// The name of its material, if it is a colour of that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// The meaning, the unit and the rule, as people read them.
     pub about: String,
     /// The name of each value, where the table has names.
@@ -44,6 +49,8 @@ pub(super) struct Field {
     pub values: Vec<String>,
     /// The least and the greatest number that each value may be; null where the table does not say.
     pub range: Option<[f64; 2]>,
+    /// Which numbers the values may be: `any`, `not negative` or `positive`.
+    pub signs: &'static str,
     /// Whether the values are whole numbers.
     pub whole: bool,
     /// Why the values cannot be changed here; null where they can be.
@@ -98,6 +105,21 @@ pub fn fixed(view: &View, name: &str, attribute: &dyn Attribute) -> Option<&'sta
     }
 }
 
+/// Returns which numbers the values of an attribute may be.
+fn signs(attribute: &dyn Attribute, count: usize) -> &'static str {
+    let may_be = |number: i8| {
+        attribute.allows(&match attribute.value_type() {
+            Type::Whole => Datum::Whole(vec![number.into(); count]),
+            _ => Datum::Numbers(vec![number.into(); count]),
+        })
+    };
+    match [-1, 0].map(may_be) {
+        [true, _] => "any",
+        [_, true] => "not negative",
+        _ => "positive",
+    }
+}
+
 fn of(registry: &Registry, shown: Shown, record: &Record) -> Fields {
     let args = record.args();
     let view = shown.view(registry);
@@ -106,8 +128,10 @@ fn of(registry: &Registry, shown: Shown, record: &Record) -> Fields {
         let about: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         Field {
             name: attribute.name().into(),
+            material: None,
             about: about.join("; "),
             each: attribute.each(),
+            signs: signs(attribute, values.len()),
             values,
             range: attribute.range(),
             whole: matches!(attribute.value_type(), Type::Whole),
@@ -116,7 +140,23 @@ fn of(registry: &Registry, shown: Shown, record: &Record) -> Fields {
     };
     let numbers =
         args.values().filter(|(attribute, datum)| is_number(*attribute) && !matches!(datum, Datum::Absent));
-    let attributes =
-        numbers.map(|(attribute, datum)| field(attribute, Syntax::Notes.values(datum))).collect();
-    Fields { entity: named(record), attributes }
+    let own = numbers.map(|(attribute, datum)| field(attribute, Syntax::Notes.values(datum)));
+    // The colours that the text gives the object's material.
+    let name = args.values().find_map(|(_, datum)| match datum {
+        Datum::Material { name, .. } => Some(&**name),
+        _ => None,
+    });
+    let material = shown.model.materials.iter().find(|material| Some(material.args.name()) == name);
+    let values = material.map(|material| material.args.args());
+    let colours = values.iter().flat_map(|values| values.values()).filter(|(attribute, _)| {
+        let name = name.unwrap_or_default();
+        attribute.each() == COLOUR
+            && fixed(&view, name, *attribute).is_none()
+            && !given(&view, name, attribute.name()).is_empty()
+    });
+    let colours = colours.map(|(attribute, datum)| Field {
+        material: name.map(str::to_owned),
+        ..field(attribute, Syntax::Notes.values(datum))
+    });
+    Fields { entity: named(record), attributes: colours.chain(own).collect() }
 }

@@ -7,6 +7,7 @@ const STYLE: &str = include_str!("html/style.css");
 /// The scripts of all pages; the scripts of a single page stand between them.
 const FIRST: &str = include_str!("html/state.js");
 const SHARED: &str = concat!(
+    include_str!("html/colours.js"),
     include_str!("html/scene.js"),
     include_str!("html/display.js"),
     include_str!("html/image.js"),

@@ -36,9 +36,11 @@ pub fn of(registry: &Registry, shown: Shown) -> Option<Fields> {
         let value = set(shown.sets, &name).unwrap_or_else(|| view.word(value).into_owned());
         Field {
             name: name.into(),
+            material: None,
             about: "a number of the scene".to_owned(),
             each: &[],
             values: vec![value],
+            signs: "any",
             range: None,
             whole: false,
             fixed: None,

@@ -46,15 +46,16 @@ const open = (entity, all) => {
 
 const showFields = ({ name, attributes }) => {
   $('#fields form').replaceChildren(...attributes.flatMap((attribute) => {
-    const { name: of, about, each, values, range, whole, fixed } = attribute
+    const { name: of, material, about, each, values, range, signs, whole, fixed } = attribute
     const boxes = [], sliders = []
-    const send = () => tryOut(name, of, boxes.map((box) => box.value))
+    const send = (values) => tryOut(material ?? name, of, values)
     const pick = (picked) => {
-      picked.forEach((channel, index) => { boxes[index].value = sliders[index].value = channel })
-      send()
+      boxes.forEach((box, index) => { box.value = sliders[index].value = picked[index] })
+      send(picked.map(String))
     }
     const isColour = each.join() === 'red,green,blue' && values.length === 3
-    const picker = isColour ? colourPicker(of, about, values, fixed, pick) : null
+    const picker = isColour ? colourPicker(material ? `${material} ${of}` : of, about, values, fixed, pick) : null
+    if (material) return picker?.row ?? []
     const rows = values.flatMap((value, index) => {
       const label = document.createElement('label'), box = document.createElement('input')
       const which = values.length > 1 ? ` ${each[index] ?? 'xyz'[index] ?? index + 1}` : ''
@@ -70,7 +71,8 @@ const showFields = ({ name, attributes }) => {
       }
       const slider = document.createElement('input'), number = +value
       const reach = Math.max(1, 2 * Math.abs(number))
-      const [low, high] = range && range[1] - range[0] < 1e4 ? range : [number - reach, number + reach]
+      const least = { any: -Infinity, 'not negative': 0, positive: whole ? 1 : (number + reach) / 400 }[signs]
+      const [low, high] = range && range[1] - range[0] < 1e4 ? range : [Math.max(number - reach, least), number + reach]
       Object.assign(slider, { type: 'range', min: low, max: high, step: whole ? 1 : (high - low) / 400, value, title: about })
       slider.setAttribute('aria-label', of + which)
       Object.assign(box, { type: 'number', step: whole ? 1 : 'any', value })
@@ -81,7 +83,7 @@ const showFields = ({ name, attributes }) => {
         to.value = from === slider && !whole ? +(+from.value).toPrecision(4) : from.value
         for (const other of boxes) other.classList.add('tried')
         picker?.show(boxes.map((box) => box.value))
-        send()
+        send(boxes.map((box) => box.value))
       }
       slider.addEventListener('input', change(slider, box))
       box.addEventListener('input', change(box, slider))
@@ -97,7 +99,7 @@ const showFields = ({ name, attributes }) => {
 /// channel at 1, and keeps its brightness.
 const colourPicker = (of, about, values, fixed, pick) => {
   const label = document.createElement('label'), box = document.createElement('input')
-  label.textContent = of
+  label.textContent = visible(of)
   label.htmlFor = box.id = `field-${of}-colour`
   Object.assign(box, { type: 'color', title: about, disabled: !!fixed })
   let most = 1

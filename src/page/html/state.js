@@ -30,8 +30,9 @@ const state = (name, said) => {
 /// Announces text to screen readers.
 const announce = (said) => { $('#said').textContent = said }
 
-// Further actions when a scene arrives, when its picture is complete, and when the picture is drawn again.
-const on = { scene: [], done: [], drawn: [] }
+// Further actions when a scene arrives, when its picture is complete, when the picture is drawn again, and when it has
+// another place or size on the screen.
+const on = { scene: [], done: [], drawn: [], placed: [] }
 const happens = (what) => { for (const act of on[what]) act() }
 
 // The actions of keys.

@@ -2,11 +2,14 @@
 
 let mark = null
 let zoom = 1, offset = [0, 0], isFit = true
+// The pixels of the screen around an image that fills its place, on both sides together.
+const MARGIN = 16
 
 const place = () => {
   canvas.style.imageRendering = zoom > 4 ? 'pixelated' : ''
   sheet.style.transform = `translate(${offset[0]}px, ${offset[1]}px) scale(${zoom})`
   sheet.style.setProperty('--screen', `${1 / zoom}px`)
+  happens('placed')
   if (!mark) return
   // The mark has the same width at any zoom.
   const [left, top] = mark.map((at, side) => `${offset[side] + zoom * at}px`)
@@ -16,10 +19,7 @@ const place = () => {
 const fit = () => {
   const { clientWidth, clientHeight } = stage
   if (!width || !clientWidth) return
-  canvas.style.imageRendering = ''
-  const whole = Math.min((clientWidth - 32) / width, (clientHeight - 32) / height)
-  // If pixels are enlarged and not smoothed, all have the same size.
-  zoom = whole > 1 && getComputedStyle(canvas).imageRendering === 'pixelated' ? Math.floor(whole) : whole
+  zoom = Math.min((clientWidth - MARGIN) / width, (clientHeight - MARGIN) / height)
   offset = [(clientWidth - zoom * width) / 2, (clientHeight - zoom * height) / 2].map(Math.round)
   isFit = true
   place()

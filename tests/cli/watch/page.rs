@@ -185,6 +185,68 @@ fn a_value_that_is_tried_shows_and_is_written_into_the_scene_alone() {
 }
 
 #[test]
+fn a_click_on_a_ball_offers_the_colour_of_its_material() {
+    let text = ball("1 0 0");
+    let Some((watching, browser)) = opened(&text) else { return };
+    click(&browser, [40, 30]);
+    browser.wait("document.querySelector('#fields input[type=color]')");
+    let label = "return document.querySelector('#fields label').textContent";
+    assert_eq!(browser.text(label), "paint ambient");
+    browser.run(
+        "const box = document.querySelector('#fields input[type=color]');
+         box.value = '#00ff00'; box.dispatchEvent(new Event('input', { bubbles: true }))",
+    );
+    shown(&browser, 2);
+    let green = text.replace("ambient 1 0 0", "ambient 0 1 0");
+    assert!(canvas(&browser) == render(&model(&green)));
+    browser.run("document.querySelector('#write').click()");
+    browser.wait("document.querySelector('#fields p span').textContent === 'written'");
+    assert_eq!(fs::read_to_string(watching.scene()).expect("a scene"), green);
+}
+
+#[test]
+fn sliders_of_what_may_not_be_negative_end_at_0() {
+    let Some((_watching, browser)) = opened(&ball("9 0 0")) else { return };
+    let least = |entity: &str, field: &str| {
+        browser.run(&format!(
+            "const all = document.querySelector('#fields select'); all.value = '{entity}';
+             all.dispatchEvent(new Event('change', {{ bubbles: true }}))"
+        ));
+        browser.wait(&format!("document.querySelector('{field}')"));
+        let least = browser.text(&format!("return document.querySelector('{field}').previousSibling.min"));
+        least.parse::<f64>().expect("a number")
+    };
+    click(&browser, [40, 30]);
+    browser.wait("document.querySelector('#field-radius-0')");
+    // A radius of 0 is refused: the slider ends at its first step.
+    let radius = least("sphere ball", "#field-radius-0");
+    assert!(radius > 0.0 && radius < 0.02, "{radius}");
+    assert!(least("sphere ball", "#field-center-0") < 0.0);
+    assert_eq!(least("material paint", "#field-ambient-0"), 0.0);
+    assert!(least("camera eye", "#field-worlddim-0") > 0.0);
+}
+
+#[test]
+fn the_image_fills_its_place_and_the_text_has_colours() {
+    let text = format!("# a ball\nlet k 1.5\n{}", ball("9 0 0"));
+    let Some((_watching, browser)) = opened(&text) else { return };
+    let sides = "const [image, place] = ['canvas', '#stage'].map((one) => document.querySelector(one).getBoundingClientRect())
+         return [place.width - image.width, place.height - image.height]";
+    let sides = browser.run(sides);
+    let least = sides.as_array().expect("two").iter().filter_map(Value::as_f64).fold(f64::INFINITY, f64::min);
+    assert!((0.0..=17.0).contains(&least), "{sides}");
+    let of = |kind: &str| {
+        browser.text(&format!(
+            "return [...document.querySelectorAll('#text .{kind}')].map((piece) => piece.textContent).join('|')"
+        ))
+    };
+    assert_eq!(of("comment"), "# a ball");
+    assert_eq!(of("keyword"), "let");
+    assert_eq!(of("type"), "camera|material|sphere");
+    assert_eq!(of("number"), "1.5|80|60|8|6|4|3|6|9|0|0|4|3|-3|2");
+}
+
+#[test]
 fn the_camera_has_values_too_and_they_stay_while_the_image_follows() {
     let text = ball("9 0 0");
     let Some((watching, browser)) = opened(&text) else { return };

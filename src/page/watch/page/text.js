@@ -9,7 +9,7 @@ const write = (text) => {
   current = text
   $('#text').replaceChildren(...text.split('\n').map((line) => {
     const row = document.createElement('div')
-    row.textContent = visible(line)
+    row.append(...coloured(visible(line)))
     return row
   }))
 }
