@@ -20,6 +20,9 @@ const AREA_SIZE: usize = 32;
 /// The width and height, in blocks, of the squares that are traced together.
 const SQUARE: usize = 8;
 
+/// The number of levels by which a channel of two pixels side by side differs where an edge is smoothed.
+const STEP: u8 = 8;
+
 /// A rectangle of an image. Positions count pixels from the left and from the top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
@@ -74,6 +77,45 @@ impl Area {
         }
         Some(colours)
     }
+
+    /// Computes the colours of pixels by one ray for each, and again by `samples` rays where a pixel next to it looks
+    /// different.
+    fn smoothed(&self, plan: &mut Plan, samples: u32) -> Vec<Rgb> {
+        let [left, top] = self.corner.map(|side| side.saturating_sub(1));
+        let [right, bottom] =
+            [0, 1].map(|side| (self.corner[side] + self.size[side] + 1).min(plan.camera.pixels[side]));
+        let around = Self { corner: [left, top], size: [right - left, bottom - top], ..*self };
+        plan.camera.samples = 1;
+        let colours = around.colours(plan, &|| ControlFlow::Continue(())).unwrap_or_default();
+        let display = plan.camera.display();
+        let bytes: Vec<_> = colours.iter().map(|colour| display.bytes(*colour)).collect();
+        let index = |[x, y]: [usize; 2]| (y - top) * (right - left) + x - left;
+        let is_edge = |at: &[usize; 2]| {
+            let [x, y] = *at;
+            let beside = [[x.max(left + 1) - 1, y], [(x + 1).min(right - 1), y]];
+            let above = [[x, y.max(top + 1) - 1], [x, (y + 1).min(bottom - 1)]];
+            let mine = bytes[index(*at)];
+            let differs = |other: [usize; 2]| {
+                mine.iter().zip(bytes[index(other)]).any(|(one, other)| one.abs_diff(other) > STEP)
+            };
+            beside.into_iter().chain(above).any(differs)
+        };
+        let pixels = (self.corner[1]..self.corner[1] + self.size[1])
+            .flat_map(|y| (self.corner[0]..self.corner[0] + self.size[0]).map(move |x| [x, y]));
+        let mut smoothed: Vec<_> = pixels.clone().map(|at| colours[index(at)]).collect();
+        let edges: Vec<_> = pixels.enumerate().filter(|(_, at)| is_edge(at)).collect();
+        plan.camera.samples = samples;
+        let (mut scratch, mut nobody) = (Scratch::default(), Flaws::default());
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
+        for some in edges.chunks((PACKET_SIZE / samples as usize).max(1)) {
+            let pixels: Vec<_> = some.iter().map(|(_, [x, y])| [*x, plan.camera.pixels[1] - 1 - y]).collect();
+            let seen = tracer.pixels(&pixels);
+            for (which, (place, _)) in some.iter().enumerate() {
+                smoothed[*place] = seen.get(which);
+            }
+        }
+        smoothed
+    }
 }
 
 /// Lists the areas of a pass over an image in the order in which they are rendered: with blocks of pixels, or with
@@ -112,6 +154,8 @@ fn passes(pixels: [usize; 2], samples: u32) -> impl Iterator<Item = Pass> {
 pub struct Steps {
     /// The areas and the samples of their pixels, the last one first.
     left: Vec<(Area, u32)>,
+    /// Whether only edges have all samples.
+    smooths: bool,
 }
 
 impl Steps {
@@ -121,7 +165,15 @@ impl Steps {
             .flat_map(|Pass { samples, areas }| areas.into_iter().map(move |area| (area, samples)))
             .collect();
         left.reverse();
-        Self { left }
+        Self { left, smooths: false }
+    }
+
+    /// Begins an image of which only edges have this many samples. Of `all` that share the work, it is this one's part.
+    pub fn smooth(pixels: [usize; 2], samples: u32, part: usize, all: usize) -> Self {
+        let areas = areas(pixels, 1, true).into_iter().skip(part).step_by(all.max(1));
+        let mut left: Vec<_> = areas.map(|area| (area, samples)).collect();
+        left.reverse();
+        Self { left, smooths: true }
     }
 
     /// Tells whether the image is complete.
@@ -132,6 +184,9 @@ impl Steps {
     /// Renders the next area with a plan of the image; `None` where the image is complete.
     pub fn next(&mut self, plan: &mut Plan) -> Option<(Area, Vec<Rgb>)> {
         let (area, samples) = self.left.pop()?;
+        if self.smooths {
+            return Some((area, area.smoothed(plan, samples)));
+        }
         plan.camera.samples = samples;
         let colours = area.colours(plan, &|| ControlFlow::Continue(()))?;
         Some((area, colours))

@@ -37,8 +37,9 @@ pub fn of(registry: &Registry, text: &str) -> Value {
     place(&view).map_or(Value::Null, |place| view.slice(place).into())
 }
 
-/// Replaces the formula of a text's first `implicit`. A text without an `implicit` is replaced as a whole. In the
-/// notes' syntax, names that the text does not define become numbers in it, with the value 1.
+/// Replaces the formula of a text's first `implicit`, and the name of its surface at the text's beginning. A text
+/// without an `implicit` is replaced as a whole. In the notes' syntax, names that the text does not define become
+/// numbers in it, with the value 1, and numbers of the formula before that nothing needs any more go.
 ///
 /// # Errors
 /// Returns why the formula cannot stand there.
@@ -57,10 +58,38 @@ pub fn changed(registry: &Registry, body: &str) -> Result<String, String> {
     }
     let view = read(registry, &text);
     let text = match place(&view) {
-        Some(place) => view.text.edited(place, &formula).as_str().to_owned(),
-        None => surfaces::of_formula("a surface by its formula", &formula, 2.0, &[]),
+        Some(place) => {
+            let before = view.slice(place.clone());
+            without_unneeded(&titled(view.text.edited(place, &formula).as_str(), &formula), before)
+        }
+        None => surfaces::of_formula(&surfaces::heading(&formula), &formula, 2.0, &[]),
     };
     Ok(with_unknown(registry, text))
+}
+
+/// Names the surface of a formula at the beginning of a text that names another surface there.
+fn titled(text: &str, formula: &str) -> String {
+    let rest = text.strip_prefix("# ").and_then(|rest| rest.split_once('\n'));
+    match rest.filter(|(words, _)| surfaces::is_heading(words)) {
+        Some((_, rest)) => format!("# {}\n{rest}", surfaces::heading(formula)),
+        None => text.to_owned(),
+    }
+}
+
+/// Removes the lines with a `let` that the formula before needed, and that the rest of a text does not need.
+fn without_unneeded(text: &str, before: &str) -> String {
+    fn words(line: &str) -> impl Iterator<Item = &str> {
+        line.split(|letter: char| !letter.is_alphanumeric() && letter != '_').filter(|word| !word.is_empty())
+    }
+    let names = |line: &str, name: &str| words(line).any(|word| word == name);
+    let is_needed = |line: &&str| {
+        let mut first = words(line);
+        let (Some("let"), Some(name)) = (first.next(), first.next()) else { return true };
+        first.any(|word| word == "let")
+            || !names(before, name)
+            || text.split_inclusive('\n').any(|other| other != *line && names(other, name))
+    };
+    text.split_inclusive('\n').filter(is_needed).collect()
 }
 
 /// Adds a `let` to a text in the notes' syntax for each name of the first formula that the text does not define.

@@ -6,9 +6,13 @@ use tabray_core::render::Levels;
 use tabray_core::render::progressive::{Area, Steps};
 use tabray_core::scene::model::Model;
 use tabray_core::world::material::Rgb;
+use tabray_core::world::sensor::Sensor;
 use tabray_lang::reader;
 use tabray_page::display::singles;
 use tabray_tools::diagnosis;
+
+/// The number of samples at the edges of a smooth picture.
+const SMOOTH: u32 = 16;
 
 /// A picture: its remaining steps, and its pixels so far.
 #[derive(Default)]
@@ -40,6 +44,12 @@ impl Painting {
         let numbers = 3 * width * height;
         let steps = Some(Steps::new(size, camera.samples));
         Self { steps, size, bytes: vec![0; numbers], colours: vec![0.0; numbers], levels: Levels::default() }
+    }
+
+    /// Begins a part of the picture with smooth edges. There are this many parts in all.
+    pub fn smooth(model: &Model, [part, all]: [usize; 2]) -> Self {
+        let Sensor { pixels, samples, .. } = model.camera.value;
+        Self { steps: Some(Steps::smooth(pixels, samples.max(SMOOTH), part, all)), ..Self::new(model) }
     }
 
     /// Renders the next areas, up to `count`. An area starts with seven numbers of 32 bits, little-endian: left, top,

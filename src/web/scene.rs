@@ -56,14 +56,22 @@ pub struct Unread {
 }
 
 impl Scene {
-    /// Reads a scene.
+    /// Reads a scene, with its picture at this size instead of its own.
     ///
     /// # Errors
     /// Returns the faults of the scene.
-    pub fn read(registry: &Registry, version: &str, text: &str) -> Result<Self, Unread> {
+    pub fn read(
+        registry: &Registry,
+        version: &str,
+        text: &str,
+        size: Option<[usize; 2]>,
+    ) -> Result<Self, Unread> {
         let options = ReadOptions { memory: Some(MEMORY), ..ReadOptions::default() };
-        let loaded = reader::read_by(registry, NAME, Path::new(""), text.as_bytes(), options)
+        let mut loaded = reader::read_by(registry, NAME, Path::new(""), text.as_bytes(), options)
             .map_err(|report| Unread::of(&report, text))?;
+        if let Some(size) = size {
+            loaded.model.camera.value.pixels = size.map(|side| side.max(1));
+        }
         let [width, height] = loaded.model.camera.value.pixels;
         if width.saturating_mul(height) > MAX_PIXELS {
             let report = format!(

@@ -81,15 +81,24 @@ impl Session {
         let text = str::from_utf8(body).unwrap_or_default();
         let parts: Vec<&str> = path.split('/').collect();
         match parts[..] {
-            ["scene", version] => self.read(version, text),
+            ["scene", version] => self.read(version, text, None),
+            ["smooth", version, width, height, part, all] => {
+                match [width, height, part, all].map(str::parse) {
+                    [Ok(width), Ok(height), Ok(part), Ok(all)] => {
+                        self.read(version, text, Some(([width, height], [part, all])))
+                    }
+                    _ => Answer::missing(),
+                }
+            }
             ["file", name] => {
                 held::hold(Path::new(&*files::decoded(name)), body.to_owned());
                 Answer::new(200, "")
             }
             ["surfaces"] => Answer::json(&surfaces::all()),
-            ["surface", name] => {
-                surfaces::scene(name).map_or_else(Answer::missing, |text| Answer::new(200, text))
-            }
+            ["surface", name] => match surfaces::scene(&files::decoded(name)) {
+                Ok(text) => Answer::new(200, text),
+                Err(unknown) => Answer::new(404, unknown),
+            },
             ["formula"] => Answer::json(&formula::of(self.registry, text)),
             ["formula", "change"] => Answer::changed(formula::changed(self.registry, text)),
             ["diagnose"] => Answer::json(&editing::diagnose(self.registry, text)),
@@ -111,11 +120,15 @@ impl Session {
         }
     }
 
-    /// Reads a scene, which replaces the one before. If it has errors, the one before stays.
-    fn read(&mut self, version: &str, text: &str) -> Answer {
-        match Scene::read(self.registry, version, text) {
+    /// Reads a scene, which replaces the one before. If it has errors, the one before stays. Its picture may have
+    /// another size and smooth edges, of which a part is painted.
+    fn read(&mut self, version: &str, text: &str, smooth: Option<([usize; 2], [usize; 2])>) -> Answer {
+        match Scene::read(self.registry, version, text, smooth.map(|(size, _)| size)) {
             Ok(scene) => {
-                self.painting = Painting::new(&scene.model);
+                self.painting = match smooth {
+                    Some((_, part)) => Painting::smooth(&scene.model, part),
+                    None => Painting::new(&scene.model),
+                };
                 self.proving = Proving::default();
                 let description = scene.description();
                 self.scene = Some(scene);

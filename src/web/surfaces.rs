@@ -1,6 +1,7 @@
 //! Named surfaces, as scenes to start from.
 
 use serde::Serialize;
+use tabray_core::text;
 
 /// A surface, in a table.
 #[derive(Serialize)]
@@ -26,6 +27,9 @@ macro_rules! surfaces {
         &[$(Surface { name: $name, title: $title, about: $about, formula: $formula, lets: &[$($given),*], size: $size }),*]
     };
 }
+
+/// The words at the beginning of a scene whose surface has no name.
+const UNNAMED: &str = "a surface by its formula";
 
 /// All surfaces. The first one is shown first.
 const SURFACES: &[Surface] = surfaces! {
@@ -148,11 +152,38 @@ pub fn all() -> &'static [Surface] {
     SURFACES
 }
 
+impl Surface {
+    /// Returns the words at the beginning of its scene.
+    fn heading(&self) -> String {
+        format!("{}: {}", self.title, self.about)
+    }
+}
+
 /// Returns the scene of the surface of this name.
-pub fn scene(name: &str) -> Option<String> {
-    let surface = SURFACES.iter().find(|surface| surface.name == name)?;
-    let title = format!("{}: {}", surface.title, surface.about);
-    Some(of_formula(&title, surface.formula, surface.size, surface.lets))
+///
+/// # Errors
+/// Returns what is wrong with the name.
+pub fn scene(name: &str) -> Result<String, String> {
+    let Some(surface) = SURFACES.iter().find(|surface| surface.name == name) else {
+        let near = text::nearest(name, SURFACES.iter().map(|surface| surface.name));
+        let cure = near.map_or_else(
+            || "choose one from the list beside the formula".to_owned(),
+            |near| format!("did you mean `{near}`?"),
+        );
+        return Err(format!("there is no surface `{}`: {cure}", text::visible(name)));
+    };
+    Ok(of_formula(&surface.heading(), surface.formula, surface.size, surface.lets))
+}
+
+/// Returns the words at the beginning of a scene with this formula.
+pub fn heading(formula: &str) -> String {
+    let known = SURFACES.iter().find(|surface| surface.formula == formula);
+    known.map_or_else(|| UNNAMED.to_owned(), Surface::heading)
+}
+
+/// Tells whether the beginning of a scene is one of [`heading`].
+pub fn is_heading(words: &str) -> bool {
+    words == UNNAMED || SURFACES.iter().any(|surface| surface.heading() == words)
 }
 
 /// Returns the scene of a formula, clipped by a ball of radius `size`.

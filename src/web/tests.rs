@@ -161,6 +161,101 @@ fn a_formula_takes_the_place_of_the_one_before_and_unknown_names_become_numbers(
 }
 
 #[test]
+fn the_name_of_a_surface_and_its_numbers_follow_the_formula() {
+    let mut session = Session::new();
+    let mut formula_of = |text: &str, formula: &str| {
+        let body = serde_json::json!({ "text": text, "formula": formula }).to_string();
+        asked(&mut session, "formula/change", &body)["text"].as_str().expect("a text").to_owned()
+    };
+    let text = crate::surfaces::scene("barth-6").expect("there");
+    let other = formula_of(&text, "x^2 + y^2 + P*z^2 - 1");
+    assert!(other.starts_with("# a surface by its formula\nlet P "), "{other}");
+    assert!(!other.contains("let w"), "{other}");
+    let cubic = formula_of(&other, "4*(x^2 + y^2 + z^2) + 16*x*y*z - 1");
+    assert!(
+        cubic.starts_with("# Cayley's cubic: four nodes, the most that a cubic can have\n\nlook_at"),
+        "{cubic}"
+    );
+    // What somebody wrote stays, and so does a number that something else needs.
+    let own = text.replacen("# Barth's sextic", "# my sextic", 1)
+        + "sphere dot { material front  radius \"w/10\" }\n";
+    let changed = formula_of(&own, "x + y");
+    assert!(changed.starts_with("# my sextic: 65 nodes") && changed.contains("\nlet w 1\n"), "{changed}");
+}
+
+#[test]
+fn an_unknown_surface_is_said_to_be_unknown() {
+    let mut session = Session::new();
+    for (name, words) in [
+        ("bart-6", "there is no surface `bart-6`: did you mean `barth-6`?"),
+        ("teapot", "there is no surface `teapot`: choose one from the list beside the formula"),
+    ] {
+        let answer = session.answer(&format!("surface/{name}"), b"");
+        assert_eq!((answer.status, &*String::from_utf8_lossy(&answer.bytes)), (404, words));
+    }
+}
+
+#[test]
+fn a_smooth_picture_has_one_sample_in_flat_places_and_16_at_edges() {
+    let [width, height] = [97, 70];
+    let mut smooth = vec![0; 3 * width * height];
+    for part in 0..2 {
+        let mut session = Session::new();
+        asked(&mut session, &format!("smooth/1/{width}/{height}/{part}/2"), BALL);
+        loop {
+            let bytes = session.answer("paint/1/2", b"").bytes;
+            if bytes.is_empty() {
+                break;
+            }
+            let mut rest = &bytes[..];
+            while !rest.is_empty() {
+                let number = |index: usize| {
+                    u32::from_le_bytes([0, 1, 2, 3].map(|byte| rest[4 * index + byte])) as usize
+                };
+                let [left, top, wide, high, _, is_final, blocks] = [0, 1, 2, 3, 4, 5, 6].map(number);
+                assert_eq!((blocks, is_final), (wide * high, 1));
+                for pixel in 0..blocks {
+                    let (from, to) = (
+                        28 + 12 * blocks + 3 * pixel,
+                        3 * ((top + pixel / wide) * width + left + pixel % wide),
+                    );
+                    smooth[to..to + 3].copy_from_slice(&rest[from..from + 3]);
+                }
+                rest = &rest[28 + 12 * blocks + (3 * blocks).next_multiple_of(4)..];
+            }
+        }
+    }
+    let registry = Registry::get().expect("plugins");
+    let image = |samples| {
+        let mut loaded = read(registry, "scene", Path::new(""), BALL.as_bytes(), None)
+            .unwrap_or_else(|report| panic!("{report}"));
+        loaded.model.camera.value.pixels = [width, height];
+        loaded.model.camera.value.samples = samples;
+        Renderer::default().picture(&Plan::for_picture(&loaded.model))
+    };
+    let (single, many) = (image(1), image(16));
+    let pixel = |x: usize, y: usize| 3 * (y * width + x)..3 * (y * width + x) + 3;
+    let differ =
+        |one: &[u8], other: &[u8]| one.iter().zip(other).any(|(one, other)| one.abs_diff(*other) > 8);
+    let mut edges = 0;
+    for y in 0..height {
+        for x in 0..width {
+            let mine = &single[pixel(x, y)];
+            let beside = [
+                (x.max(1) - 1, y),
+                ((x + 1).min(width - 1), y),
+                (x, y.max(1) - 1),
+                (x, (y + 1).min(height - 1)),
+            ];
+            let is_edge = beside.iter().any(|(x, y)| differ(mine, &single[pixel(*x, *y)]));
+            edges += usize::from(is_edge);
+            assert_eq!(&smooth[pixel(x, y)], if is_edge { &many[pixel(x, y)] } else { mine }, "{x} {y}");
+        }
+    }
+    assert!((50..2000).contains(&edges), "{edges}");
+}
+
+#[test]
 fn the_camera_is_moved_in_the_text() {
     let mut session = Session::new();
     let text = asked(&mut session, "surface/torus", "").as_str().expect("a text").to_owned();

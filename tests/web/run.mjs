@@ -87,18 +87,18 @@ const surface = async (name) => {
   return surfaces.get(name)
 }
 
-/// The bytes of the picture on the canvas.
-const canvas = async () => Buffer.from(await run(`
-  const c = document.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data
+/// The bytes of the picture on a canvas: that of the scene's pixels, or the one above it.
+const canvas = async (which = 'canvas') => Buffer.from(await run(`
+  const c = document.querySelector(arguments[0]), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data
   let s = ''
   for (let at = 0; at < d.length; at += 4) s += String.fromCharCode(d[at], d[at + 1], d[at + 2])
-  return btoa(s)`), 'base64')
+  return btoa(s)`, which), 'base64')
 
 /// The bytes that the program renders.
-const native = (text) => {
+const native = (text, ...options) => {
   const [scene, image] = ['scene.ray', 'image.ppm'].map((name) => join(work, name))
   writeFileSync(scene, text)
-  execFileSync(program, ['render', scene, '-o', image], { stdio: ['ignore', 'ignore', 'pipe'] })
+  execFileSync(program, ['render', scene, '-o', image, '--force', ...options], { stdio: ['ignore', 'ignore', 'pipe'] })
   const bytes = readFileSync(image)
   return bytes.subarray(bytes.indexOf('\n') + 1)
 }
@@ -251,9 +251,63 @@ try {
 
   await both(own)
 
+  await step('at rest, the picture has the pixels of the screen and smooth edges', async () => {
+    const text = await surface('heart')
+    await show(text)
+    await wait('document.documentElement.dataset.smooth')
+    const [width, height, box] = await run("const c = document.querySelector('#fine'), b = c.getBoundingClientRect(); return [c.width, c.height, [b.width, b.height]]")
+    assert(Math.abs(box[0] - width) <= 1 && Math.abs(box[1] - height) <= 1, `${width} x ${height} pixels on ${box}`)
+    const size = ['--size', `${width}x${height}`], seen = await canvas('#fine')
+    const [single, many] = [native(text, ...size), native(text, ...size, '--samples', '16')]
+    let edges = 0
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width; x++) {
+        const at = 3 * (y * width + x), pixel = (bytes) => bytes.subarray(at, at + 3)
+        const differs = ([right, down]) => {
+          const isThere = x + right >= 0 && x + right < width && y + down >= 0 && y + down < height
+          return isThere && [0, 1, 2].some((channel) => Math.abs(single[at + channel] - single[at + channel + 3 * (right + down * width)]) > 8)
+        }
+        const isEdge = [[-1, 0], [1, 0], [0, -1], [0, 1]].some(differs)
+        if (isEdge) edges++
+        assert(pixel(seen).equals(pixel(isEdge ? many : single)), `${x} ${y}`)
+      }
+    }
+    await shot('smooth')
+    return `${width} x ${height}, ${(100 * edges / (width * height)).toFixed(1)} % with 16 samples, ${await data('smooth')} ms from the beginning`
+  })
+
+  await step('from a move of the camera to its coarse picture', async () => {
+    await show(await surface('barth-6'))
+    const times = await until(`
+      const times = [], root = document.documentElement
+      if (!steers) toggleSteering()
+      const move = () => {
+        const before = root.dataset.begun, from = performance.now()
+        push('orbit', [7, 3], 1)
+        const look = () => {
+          if (root.dataset.begun === before) return requestAnimationFrame(look)
+          times.push(performance.now() - from)
+          if (times.length < 20) setTimeout(move, 50); else done(times.sort((a, b) => a - b).map(Math.round))
+        }
+        look()
+      }
+      move()`)
+    return `median ${times[10]} ms, worst ${times[19]} ms`
+  })
+
   await step('the formula bar draws what is typed', async () => {
-    await run("const bar = document.querySelector('#formula'); bar.value = 'x^2 + y^2 + bend*z^2 = 1'; bar.dispatchEvent(new Event('input'))")
+    const type = (formula) => run("const bar = document.querySelector('#formula'); bar.value = arguments[0]; bar.dispatchEvent(new Event('input'))", formula)
+    await show(await surface('barth-6'))
+    await run('close()')
+    await type('x^2 + y^2 + bend*z^2 = 1')
     await wait(`editor.value.includes('let bend 1') && ${isShown}`)
+    assert(!/let [Pw]|Barth/.test(await run('return editor.value')), 'what Barth’s sextic needed')
+    assert.equal(await run("return document.querySelector('h1').textContent"), 'a surface by its formula')
+    await wait("document.querySelector('#field-bend-0') && !document.querySelector('#field-w-0')")
+    await type('x^2 + y^2 + (z')
+    await wait("document.querySelector('#badge').hidden")
+    await pause(1000)
+    assert(await run("return document.querySelector('#badge').hidden"), 'a proof of a picture that is not of the text')
     await run("const bar = document.querySelector('#formula'); bar.focus(); bar.value = 'x^2 + '; bar.dispatchEvent(new Event('input'))")
     await wait("document.querySelector('#refused').textContent.length > 0")
     const said = await run("return document.querySelector('#refused').textContent")
@@ -275,6 +329,43 @@ try {
     await run("editor.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }))")
     await wait("editor.value.includes('capped')")
     return said
+  })
+
+  await step('an address that asks for no known surface says so', async () => {
+    await run("location.hash = '#surface=barth-66'")
+    await wait("document.querySelector('#report').textContent.includes('there is no surface `barth-66`: did you mean `barth-6`?')")
+    await go('about:blank')
+    await go(`${served}#surface=teapot`)
+    await wait(`document.documentElement.dataset.ready && ${isShown}`)
+    const said = await run("return document.querySelector('#report').textContent")
+    assert(said.includes('there is no surface `teapot`'), said)
+    return said
+  })
+
+  await step('a text has colours, and stands where it is written', async () => {
+    await show('# a ball\nlet k 1\n' + await surface('torus'))
+    const [ground, text, kinds] = await run("return [[...ground.children].map((row) => row.textContent).join('\\n'), editor.value, [...new Set([...ground.querySelectorAll('span')].map((piece) => piece.className))].sort().join()]")
+    assert.equal(ground, text)
+    assert.equal(kinds, 'comment,keyword,number,quoted,type')
+  })
+
+  await step('a file under the name of another asks', async () => {
+    const drop = (text) => run(`
+      const given = new DataTransfer()
+      given.items.add(new File([arguments[0]], 'one.txt'))
+      document.dispatchEvent(new DragEvent('drop', { dataTransfer: given, cancelable: true }))`, text)
+    const kept = () => run("return new TextDecoder().decode(kept.get('one.txt'))")
+    await drop('one')
+    await wait("kept.has('one.txt')")
+    await drop('one')
+    for (const [answer, text] of [['dismiss', 'one'], ['accept', 'two']]) {
+      await drop('two')
+      for (let tries = 0; tries < 50 && !await send('/alert/text', null, 'GET').catch(() => null); tries++) await pause(20)
+      assert((await send('/alert/text', null, 'GET')).includes('another file with the name one.txt'))
+      await send(`/alert/${answer}`, {})
+      await wait(`new TextDecoder().decode(kept.get('one.txt')) === '${text}'`)
+    }
+    return kept()
   })
 
   await step('files that a scene names are dropped onto the page, or chosen', async () => {

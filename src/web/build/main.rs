@@ -27,6 +27,7 @@ const TARGET: &str = "wasm32-unknown-unknown";
 const SCRIPTS: &str = concat!(
     include_str!("../page/editor.js"),
     include_str!("../page/proof.js"),
+    include_str!("../page/smooth.js"),
     include_str!("../page/formula.js"),
     include_str!("../page/files.js"),
     include_str!("../page/save.js"),

@@ -23,14 +23,15 @@ const drawGround = () => {
     for (const { place: [first, last], severity } of problems) {
       if (last < from || first > end || (first === last && first < at)) continue
       const [start, stop] = [Math.max(first, from), Math.min(Math.max(last, first + 1), end)]
-      row.append(text.slice(from, start))
+      row.append(...coloured(line, from - at, start - at))
       const mark = document.createElement('mark')
       mark.className = severity
-      mark.textContent = text.slice(start, stop) || ' '
+      mark.append(...coloured(line, start - at, stop - at))
+      if (start >= stop) mark.textContent = ' '
       row.append(mark)
       from = Math.max(from, stop)
     }
-    row.append(text.slice(from, end))
+    row.append(...coloured(line, from - at))
     at = end + 1
     return row
   }))

@@ -13,6 +13,13 @@ const lack = (names) => {
 
 const lastOf = (path) => path.split(/[\\/]/).at(-1)
 
+/// Keeps a file. Another of its name is replaced if the user says so.
+const keep = async (file) => {
+  const bytes = new Uint8Array(await file.arrayBuffer()), before = kept.get(encodeURIComponent(file.name))
+  const isOther = before && (before.length !== bytes.length || before.some((byte, at) => byte !== bytes[at]))
+  if (!isOther || confirm(`The page has another file with the name ${visible(file.name)}. Replace it?`)) give(file.name, bytes)
+}
+
 /// Takes files. A scene becomes the text, unless the current scene includes it; the others are kept.
 const take = async (list) => {
   let text = null, bytes = [...kept.values()].reduce((sum, one) => sum + one.length, 0)
@@ -21,7 +28,7 @@ const take = async (list) => {
     if (bytes > MOST_BYTES) return report(`error: the files are larger than ${MOST_BYTES >> 20} MiB in all, which is too much for a page`, false)
     const isScene = /\.(ray|toml)$/i.test(file.name) && !lacking.some((path) => lastOf(path) === file.name)
     if (isScene) text = await file.text()
-    else give(file.name, new Uint8Array(await file.arrayBuffer()))
+    else await keep(file)
   }
   if (text === null) await changed()
   else await setText(text)

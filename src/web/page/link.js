@@ -34,6 +34,7 @@ const start = (module, hears) => new Promise((ready) => {
     worker.postMessage(request)
   })
   ask.give = (name, bytes) => worker.postMessage({ file: name, bytes })
+  ask.stop = () => worker.postMessage({ stop: true })
   const begin = () => {
     worker?.terminate()
     worker = new Worker(source)
@@ -67,13 +68,13 @@ const start = (module, hears) => new Promise((ready) => {
 // The files that the scene may name, by their encoded names.
 const kept = new Map()
 
-let painter = null, helper = null
+let program = null, painter = null, helper = null
 
 /// Gives a file to the program.
 const give = (name, bytes) => {
   const part = encodeURIComponent(name)
   kept.set(part, bytes)
-  for (const ask of [painter, helper]) ask.give(part, bytes)
+  for (const ask of [painter, helper, ...smoothers]) ask.give(part, bytes)
 }
 
 // The scene of the picture, and the version of the helper's scene.
@@ -88,6 +89,7 @@ const read = async (text) => {
     const { lines, report: words, lacking: names } = await answer.json()
     lack(names ?? [])
     refuse({ lines, report: words, name: nameOf(text), text: null })
+    tellProof()
     // The editor shows faults that have a place in the text.
     if (lines.length) report('', false)
     return
@@ -110,7 +112,7 @@ const hear = (data) => {
   }
   if (data.version !== `${version}`) return
   if (data.paint) {
-    areas(data.paint)
+    eachArea(data.paint, part)
     root.dataset.first ??= Math.round(performance.now())
   }
   else if (data.prove) prove(new Uint8Array(data.prove))
@@ -121,12 +123,12 @@ const hear = (data) => {
   else if (data.ended) report(data.ended, false)
 }
 
-/// Takes in areas of the picture.
-const areas = (buffer) => {
+/// Takes in areas of a picture.
+const eachArea = (buffer, take) => {
   for (let at = 0; at < buffer.byteLength;) {
     const [left, top, wide, high, block, isFinal, blocks] = new Uint32Array(buffer, at, 7)
     const given = new Float32Array(buffer, at + 28, 3 * blocks), bytes = new Uint8Array(buffer, at + 28 + 12 * blocks, 3 * blocks)
-    part(left, top, wide, high, block, isFinal, given, bytes)
+    take(left, top, wide, high, block, isFinal, given, bytes)
     at += 28 + 12 * blocks + 4 * Math.ceil(3 * blocks / 4)
   }
 }
@@ -158,8 +160,8 @@ const post = async (path, body) => {
 const follow = async () => {
   state('loading', 'loading')
   try {
-    const module = await compiled()
-    ;[painter, helper] = await Promise.all([start(module, hear), start(module, (data) => { helped = 0; hear(data) })])
+    program = await compiled()
+    ;[painter, helper] = await Promise.all([start(program, hear), start(program, (data) => { helped = 0; hear(data) })])
   } catch (error) {
     state('broken', 'not loaded')
     return report(`error: the program cannot be loaded: ${error.message}\nhelp: it needs a browser of 2023 or later`, false)
@@ -167,6 +169,7 @@ const follow = async () => {
   root.dataset.loaded = Math.round(performance.now())
   await listSurfaces()
   await setText(await (hosted ? hosted.first : textOfAddress()) ?? await (await helper('surface/barth-6')).text())
+  tellMisled()
   // On this page, dragging moves the camera from the beginning.
   toggleSteering()
   stage.blur()

@@ -22,7 +22,7 @@ const proofsEnd = () => {
 const tellProof = () => {
   const badge = $('#badge'), all = verdicts.length, [, proven, ties, open, wrong] = tally
   const number = (count) => count.toLocaleString('en')
-  badge.hidden = !all
+  badge.hidden = !all || !textIsThePicture
   if (judged < all) {
     badge.dataset.proof = wrong ? 'wrong' : 'going'
     badge.textContent = judged ? `proving: ${Math.floor(100 * judged / all)} %` : 'not proven yet'

@@ -8,23 +8,28 @@ const addressOf = async (text) => {
   return `#scene=${btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '')}`
 }
 
+// Why the address has no scene, although it should have one.
+let misled = ''
+const tellMisled = () => { if (misled) report(`error: ${misled}`, false) }
+
 /// The text of the address. `#surface=NAME` and `#formula=FORMULA` are short forms.
 const textOfAddress = async () => {
   const [, kind, value] = location.hash.match(/^#(scene|surface|formula)=(.*)$/) ?? []
+  misled = ''
+  if (!kind) return null
   try {
-    if (kind === 'surface') {
-      const answer = await helper(`surface/${decodeURIComponent(value)}`)
-      return answer.ok ? answer.text() : null
+    if (kind !== 'scene') {
+      const isNamed = kind === 'surface', formula = decodeURIComponent(value)
+      const answer = await (isNamed ? helper(`surface/${value}`) : helper('formula/change', JSON.stringify({ text: '', formula })))
+      if (answer.ok) return isNamed ? answer.text() : (await answer.json()).text
+      misled = await answer.text()
+      return null
     }
-    if (kind === 'formula') {
-      const answer = await helper('formula/change', JSON.stringify({ text: '', formula: decodeURIComponent(value) }))
-      return answer.ok ? (await answer.json()).text : null
-    }
-    if (kind !== 'scene') return null
     const letters = atob(value.replaceAll('-', '+').replaceAll('_', '/'))
     const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0))
     return new TextDecoder().decode(await through(bytes, new DecompressionStream('deflate-raw')))
   } catch {
+    misled = 'the address of this page is not whole: what it had of a scene cannot be read'
     return null
   }
 }
@@ -39,9 +44,7 @@ let waitsToShare = 0
 const shareSoon = () => {
   if (hosted) return
   clearTimeout(waitsToShare)
-  waitsToShare = setTimeout(async () => {
-    await writeAddress()
-  }, 400)
+  waitsToShare = setTimeout(writeAddress, 400)
 }
 
 on.scene.push(shareSoon)
@@ -49,6 +52,7 @@ window.addEventListener('hashchange', async () => {
   if (location.hash === own) return
   const text = await textOfAddress()
   if (text !== null) await setText(text)
+  tellMisled()
 })
 $('#share').addEventListener('click', async () => {
   await writeAddress()

@@ -44,7 +44,7 @@ const askSafely = (path, body) => {
     const report = `error: the program ended on this scene, and was started again\nhelp: ${error instanceof RangeError
       ? 'its reflections are deeper than a browser allows: use the program itself'
       : 'it may need more memory than a browser gives; if not, please report it'}`
-    return path.startsWith('scene/')
+    return /^(scene|smooth)\//.test(path)
       ? { status: 422, bytes: coder.encode(JSON.stringify({ lines: [], report, lacking: [] })).buffer }
       : { status: 500, bytes: coder.encode(report).buffer }
   }
@@ -76,7 +76,12 @@ port1.onmessage = () => {
     job = null
     return postMessage({ version, proven: true })
   }
-  const { began } = job, told = askSafely(`painted/${version}`)
+  const { began, proves } = job
+  if (!proves) {
+    job = null
+    return postMessage({ version, painted: (performance.now() - began) / 1000 })
+  }
+  const told = askSafely(`painted/${version}`)
   if (told.status !== 200) return end(version, told.bytes)
   const { words } = JSON.parse(decoder.decode(told.bytes))
   postMessage({ version, painted: (performance.now() - began) / 1000, words })
@@ -90,6 +95,10 @@ onmessage = ({ data }) => {
     begin()
     return postMessage({ ready: true })
   }
+  if (data.stop) {
+    job = null
+    return
+  }
   if (data.file) {
     if (askSafely(`file/${data.file}`, data.bytes).status === 200) held.set(data.file, data.bytes)
     return
@@ -101,6 +110,7 @@ onmessage = ({ data }) => {
   postMessage({ id, status, bytes }, [bytes])
   if (!paints || status !== 200) return
   const goes = job
-  job = { version: path.split('/')[1], what: 'paint', count: 0, turn: TURN, began: performance.now() }
+  const [what, version] = path.split('/')
+  job = { version, what: 'paint', proves: what === 'scene', count: 0, turn: TURN, began: performance.now() }
   if (!goes) goOn()
 }
