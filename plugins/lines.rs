@@ -146,6 +146,13 @@ impl Shader for Lines {
         covered + self.part(at) * (1.0 - covered)
     }
 
+    fn level(&self, at: &SurfacePoint) -> f64 {
+        let value = self.formula.at(at.position.to_array());
+        let own = self.spacing.map_or(f64::from(u8::from(value > 0.0)), |spacing| (value / spacing).floor());
+        // Further lines are told apart from these.
+        own + 1e6 * self.base.level(at)
+    }
+
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         let is_line = self.part(&SurfacePoint { patch: None, ..*at });
         2.0 * self.base.tile(at) + DVec2::new(is_line, 0.0)

@@ -10,7 +10,7 @@ use crate::options::frames::{Frame, Range};
 use crate::options::named::by_name;
 use crate::options::{cpu, frames, keep, method, print, samples, set, size, stop, threads};
 use crate::process::failure::Failure;
-use crate::rendering::{aov, debug, part, resume, stats};
+use crate::rendering::{aov, debug, overlay, part, resume, stats};
 use std::path::{Path, PathBuf};
 use tabray_core::output::deflate::Compression;
 use tabray_core::output::full_range::FullRange;
@@ -47,6 +47,8 @@ pub struct Args {
     exposure: f64,
     #[command(flatten)]
     print: print::Args,
+    #[command(flatten)]
+    overlay: overlay::Args,
     #[command(flatten)]
     samples: samples::Args,
     #[command(flatten)]
@@ -123,6 +125,10 @@ fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {
         return Err(Failure::usage("`--frames` takes one scene")
             .help("render the scenes one after the other, each with `-o FILE`"));
     }
+    args.refuse_overlay(
+        "`--overlay` takes one scene",
+        "render the scenes one after the other, each with its own SVG",
+    )?;
     let targets = several::targets(&args.scenes, output, args.extension())?;
     let stop = args.stop.watch()?;
     several::for_each_scene(&args.scenes, |index| {
@@ -136,6 +142,7 @@ impl Args {
     /// returns which frames; nothing is written.
     pub fn check(mut self, registry: &Registry) -> Result<Option<Range>, Failure> {
         let [scene] = &self.scenes[..] else { return Err(Failure::AlreadyReported) };
+        self.refuse_overlay("`--overlay` is for images in one piece", "leave out the option")?;
         let scene = scene.clone();
         let path = several::target(self.output.as_deref(), &scene, self.extension())?;
         if path == Path::new("-") || input::is_standard(&scene) {
@@ -162,6 +169,10 @@ impl Args {
             self.refuse_sources(&frame.path, &scene, &model)?;
         }
         Ok(self.frames.frames)
+    }
+
+    fn refuse_overlay(&self, message: &str, help: &str) -> Result<(), Failure> {
+        if self.overlay.is_wanted() { Err(Failure::usage(message).help(help)) } else { Ok(()) }
     }
 
     /// Returns the extension of an image whose name derives from its scene's.

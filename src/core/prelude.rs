@@ -18,7 +18,7 @@ pub use tabray_world::any_shape::AnyShape;
 pub use tabray_world::background::Background;
 pub use tabray_world::ball::{Ball, BallSample};
 pub use tabray_world::bent::{Bend, Bent};
-pub use tabray_world::body::{AnyShader, Body, NamedBody, ShaderFactory, Warning};
+pub use tabray_world::body::{AnyShader, Body, Label, NamedBody, ShaderFactory, Warning};
 pub use tabray_world::camera::{Camera, Origins, Projected};
 pub use tabray_world::emitter::{self, Emitter, Extent, LightSample};
 pub use tabray_world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Shape, Sides};

@@ -8,6 +8,7 @@ pub mod debug;
 pub mod diagnosis;
 pub mod identity;
 pub mod off_surface;
+pub mod overlay;
 pub mod pixels;
 pub mod probe;
 pub mod sampling;

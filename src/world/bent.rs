@@ -105,6 +105,10 @@ impl<B: Bend> Shader for Bent<B> {
         self.colours.tile(at)
     }
 
+    fn level(&self, at: &SurfacePoint) -> f64 {
+        self.colours.level(at)
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         self.colours.brightest(material)
     }

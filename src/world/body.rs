@@ -126,8 +126,21 @@ pub struct Body {
     /// The parts of its surface with different materials, which are seen in place of the whole; empty where one material
     /// does for all. Solids are made of the whole.
     pub faces: Vec<Arc<Body>>,
+    /// Texts at places of the object, for drawings over the image.
+    pub labels: Vec<Label>,
     /// Whether it keeps its own look when the object that it is seen with is given a shader.
     pub keeps_look: bool,
+}
+
+/// A text at a place of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// The text.
+    pub text: String,
+    /// The middle of the text, in world coordinates.
+    pub at: DVec3,
+    /// The vector from the foot of its digits to their head, in world units.
+    pub up: DVec3,
 }
 
 /// A solid that is made of closed shapes.
@@ -207,6 +220,7 @@ impl Body {
             solid: None,
             more: Vec::new(),
             faces: Vec::new(),
+            labels: Vec::new(),
             keeps_look: false,
         }
     }

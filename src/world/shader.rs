@@ -164,6 +164,11 @@ pub trait Shader: Send + Sync {
         DVec2::ZERO
     }
 
+    /// Returns the number of the region between level lines in which a point lies, for drawings of these lines.
+    fn level(&self, _at: &SurfacePoint) -> f64 {
+        0.0
+    }
+
     /// Returns the largest magnitudes of the three reflectivities over all points, with either sign. They decide how
     /// deep rays are followed into mirrors and glass. Returns `None` where they are not known, or where a surface that
     /// is not uniform has a negative diffuse channel somewhere. `None` is always correct.

@@ -28,6 +28,7 @@ mod light;
 mod limits;
 mod messages;
 mod new;
+mod overlay;
 mod parts;
 mod print;
 mod programs;

@@ -31,15 +31,17 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// Describes an image. With the camera goes the exposure that is added to its own, in stops.
+    /// Describes an image. With the camera goes the exposure that is added to its own, in stops; with its density, whether
+    /// its labels are in a drawing over it.
     pub fn of(
         source: &Source,
         set: &set::Args,
         camera: (&Sensor, f64),
         region: &Region,
-        dpi: Option<u32>,
+        (dpi, has_overlay): (Option<u32>, bool),
     ) -> Self {
-        let printed = dpi.map_or(String::new(), |dpi| format!(" --dpi {dpi}"));
+        let printed = dpi.map_or(String::new(), |dpi| format!(" --dpi {dpi}"))
+            + if has_overlay { " --overlay" } else { "" };
         let texts = vec![
             ("Software", concat!("tabray ", env!("CARGO_PKG_VERSION")).to_owned()),
             ("tabray scene", source.hash()),

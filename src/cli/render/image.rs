@@ -44,7 +44,14 @@ pub(super) fn render(
     let accuracy = args.method.accuracy()?;
     let source = Source::read(scene, &args.set)?;
     let memory = args.stop.memory_left();
-    let how = ReadOptions { above_all: accuracy, memory, clock: Some(clock), ..ReadOptions::default() };
+    let labels_apart = args.overlay.is_wanted();
+    let how = ReadOptions {
+        above_all: accuracy,
+        labels_apart,
+        memory,
+        clock: Some(clock),
+        ..ReadOptions::default()
+    };
     let Loaded { mut model, building, warnings, .. } = input::print_warnings(source.load_by(registry, how))?;
     let stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
@@ -55,7 +62,7 @@ pub(super) fn render(
     let region = args.size.apply(camera)?;
     args.samples.raise(&mut model, args.threads, cpu)?;
     let camera = (&model.camera.value, args.exposure);
-    let made = Provenance::of(&source, &args.set, camera, &region, dpi);
+    let made = Provenance::of(&source, &args.set, camera, &region, (dpi, labels_apart));
     let image = ImageRender {
         registry,
         args,
@@ -111,6 +118,8 @@ impl ImageRender<'_> {
         args.size.refuse_larger(path, &region)?;
         let output = Output::open(path)?;
         let beside = aov::open(&model, &args.aov, &args.main(path), &output)?;
+        let drawing =
+            args.overlay.open((path, format, self.full_range), self.made.dpi, (self.scene, &model))?;
         // The text of a large scene takes as much memory as its model.
         let source = (!beside.is_empty()).then_some(source);
         if self.full_range.is_some() && args.stop.resume {
@@ -152,11 +161,14 @@ impl ImageRender<'_> {
         trial::warn_of_mistakes((&plan, &region), &renderer, &self.made.texts, self.scene, start.elapsed());
         stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
         args.stats.print(&stats, &model);
+        if let Some(drawing) = drawing {
+            drawing.write(&plan, &region, &renderer, stop)?;
+        }
         let Some(source) = source else { return Ok(()) };
         stop.exit_on_interrupt()?;
         aov::write(
             &plan,
-            || read_exact(&source, registry, &model, memory),
+            || read_exact(&source, registry, &model, (memory, args.overlay.is_wanted())),
             args.threads,
             (format, self.made.dpi),
             beside,
@@ -197,7 +209,7 @@ impl ImageRender<'_> {
             format: *format,
         };
         let whole = Instant::now();
-        let exact = || read_exact(&self.source, self.registry, model, args.stop.memory_left());
+        let exact = || read_exact(&self.source, self.registry, model, (args.stop.memory_left(), false));
         let has_errors = beside.contains(&Aov::Error);
         part.run(args.stop.resume, |work| aov::with_truth(&plan, has_errors, exact, |truth| work(truth)))?;
         trial::warn_of_mistakes((&plan, region), &renderer, &self.made.texts, self.scene, start.elapsed());
@@ -212,10 +224,10 @@ fn read_exact(
     source: &Source,
     registry: &Registry,
     model: &Model,
-    memory: Option<u64>,
+    (memory, labels_apart): (Option<u64>, bool),
 ) -> Result<Model, Failure> {
-    let rules = Some(model.camera.value.rules);
-    let exact = ReadOptions { above_all: Some(Accuracy::Exact), rules, memory, ..ReadOptions::default() };
+    let (above_all, rules) = (Some(Accuracy::Exact), Some(model.camera.value.rules));
+    let exact = ReadOptions { above_all, rules, labels_apart, memory, ..ReadOptions::default() };
     source.load_by(registry, exact).map(|loaded| loaded.model).map_err(Failure::Scene)
 }
 

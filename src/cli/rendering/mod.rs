@@ -5,6 +5,7 @@ pub mod bands;
 pub mod debug;
 pub mod flaws;
 pub mod job;
+pub mod overlay;
 pub mod part;
 pub mod part_files;
 pub mod resume;

@@ -121,7 +121,17 @@ impl Check<'_, '_> {
         }
         let files = self.report.files().to_vec();
         let Self {
-            camera, materials, textures, shaders, objects, patterns, lights, background, places, ..
+            camera,
+            materials,
+            textures,
+            shaders,
+            objects,
+            labels,
+            patterns,
+            lights,
+            background,
+            places,
+            ..
         } = self;
         let model = camera.map(|camera| Model {
             camera: item(store, camera),
@@ -129,6 +139,7 @@ impl Check<'_, '_> {
             textures: textures.into_iter().map(|texture| item(store, texture)).collect(),
             shaders: shaders.into_iter().map(|shader| item(store, shader)).collect(),
             objects,
+            labels,
             patterns,
             lights,
             background: background.map(|background| item(store, background)),

@@ -27,7 +27,7 @@ use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
 use tabray_core::world::background::Background;
-use tabray_core::world::body::{NamedBody, ShaderFactory};
+use tabray_core::world::body::{Label, NamedBody, ShaderFactory};
 use tabray_core::world::lamp::Lamp;
 use tabray_core::world::material::Material;
 use tabray_core::world::rules::Rules;
@@ -104,6 +104,7 @@ pub(super) struct Check<'r, 't> {
     /// The memory left for the images of textures, in bytes.
     pub(super) texture_memory: u64,
     pub(super) objects: Vec<Object>,
+    pub(super) labels: Vec<(usize, Label)>,
     /// The objects that other entities refer to.
     pub(super) patterns: Vec<Item<NamedBody>>,
     pub(super) lights: Vec<Item<Lamp>>,
@@ -123,8 +124,9 @@ impl<'r, 't> Check<'r, 't> {
     ) -> Self {
         let camera = Sensor { accuracy: accuracy.by_default, ..Sensor::default() };
         let memory = accuracy.memory.unwrap_or(u64::MAX);
-        let (folder, only_rays) = (folder.to_owned(), accuracy.only_rays);
-        let setting = Setting { camera, folder, materials: Arc::default(), only_rays, memory };
+        let (folder, materials) = (folder.to_owned(), Arc::default());
+        let ReadOptions { only_rays, labels_apart, .. } = accuracy;
+        let setting = Setting { camera, folder, materials, only_rays, labels_apart, memory };
         Self {
             registry,
             report,
@@ -145,6 +147,7 @@ impl<'r, 't> Check<'r, 't> {
             shaders: Vec::new(),
             texture_memory: accuracy.memory.unwrap_or(TEXTURE_MEMORY),
             objects: Vec::new(),
+            labels: Vec::new(),
             patterns: Vec::new(),
             lights: Vec::new(),
             levels: None,

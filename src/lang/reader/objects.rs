@@ -95,6 +95,7 @@ impl Check<'_, '_> {
                 if !body.warnings.is_empty() {
                     self.warn(&record.args(), &body.warnings, source);
                 }
+                self.labels.extend(body.labels.iter().map(|label| (record.order(), label.clone())));
                 self.objects.extend(objects(record, *body));
             }
             Constructed::Deferred => {
@@ -251,6 +252,6 @@ fn constructed(
 /// Returns the result for a body. Most objects take a fraction of its memory.
 fn of(body: Body) -> Constructed {
     let is_all = body.warnings.is_empty() && body.more.is_empty() && body.material.is_none();
-    let is_all = is_all && body.boundary.is_none() && body.faces.is_empty();
+    let is_all = is_all && body.boundary.is_none() && body.faces.is_empty() && body.labels.is_empty();
     if is_all { Constructed::Plain(body.shape, body.shader) } else { Constructed::Body(Box::new(body)) }
 }

@@ -21,6 +21,8 @@ pub struct ReadOptions<'s> {
     pub may_be_bright: bool,
     /// Whether the scene is only for rays. Messages about its image are then omitted.
     pub only_rays: bool,
+    /// Whether labels are drawn over the image, and not as objects.
+    pub labels_apart: bool,
     /// The limit for the memory of the scene's textures and of its objects' files, in bytes. The default is 1 GiB for
     /// the textures, and no limit for the objects, which take little more memory than their files.
     pub memory: Option<u64>,

@@ -51,6 +51,7 @@ def axes(
     from_: _Numbers = None,
     ticks: _Numbers = None,
     radius: _Numbers = None,
+    numbers: _Numbers = None,
     xcolour: _Numbers = None,
     xcolor: _Numbers = None,
     ycolour: _Numbers = None,

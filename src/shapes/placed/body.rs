@@ -120,6 +120,10 @@ impl Shader for PlacedShader {
         self.own().tile(&self.object_point(at))
     }
 
+    fn level(&self, at: &SurfacePoint) -> f64 {
+        self.own().level(&self.object_point(at))
+    }
+
     fn in_object_space(&self, cpu: Cpu, points: SurfacePoints, each: EachPart) -> bool {
         for part in split(points.positions.len(), PART) {
             let mut positions = Vectors::<PART>::ZERO;

@@ -37,6 +37,10 @@ impl Shader for PartShader {
         self.0.shader.tile(at)
     }
 
+    fn level(&self, at: &SurfacePoint) -> f64 {
+        self.0.shader.level(at)
+    }
+
     fn bends(&self) -> bool {
         self.0.shader.bends()
     }

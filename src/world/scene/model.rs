@@ -2,7 +2,7 @@
 
 use crate::any_shape::AnyShape;
 use crate::background::Background;
-use crate::body::{AnyShader, NamedBody, ShaderFactory};
+use crate::body::{AnyShader, Label, NamedBody, ShaderFactory};
 use crate::geometry::ray::Side;
 use crate::lamp::Lamp;
 use crate::material::{Material, Rgb};
@@ -37,6 +37,8 @@ pub struct Model {
     pub lights: Vec<Item<Lamp>>,
     /// The colour of rays that hit nothing; black without a background.
     pub background: Option<Item<Arc<dyn Background>>>,
+    /// The texts of objects, each with the order of its entity in the scene.
+    pub labels: Vec<(usize, Label)>,
     /// The files that the scene names: those that it includes, and those of its entities.
     pub files: Vec<PathBuf>,
 }

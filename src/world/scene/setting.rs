@@ -18,6 +18,8 @@ pub struct Setting {
     pub materials: Arc<BTreeMap<String, Arc<Material>>>,
     /// Whether only hits of rays are asked for, and the looks of objects do not matter.
     pub only_rays: bool,
+    /// Whether [labels](crate::body::Body::labels) are drawn over the image, and not as objects.
+    pub labels_apart: bool,
     /// The memory that an object may take in addition to the scene, in bytes.
     pub memory: u64,
 }

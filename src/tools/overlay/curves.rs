@@ -1,0 +1,102 @@
+//! Joins the places where lines cross the sides of pixels to curves.
+
+use super::{Curve, Key};
+use glam::DVec2;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The farthest that a curve may pass from the places that it joins, in pixels.
+const TOLERANCE: f64 = 0.02;
+
+/// A place, and the places beside it on its curves.
+struct Node {
+    at: DVec2,
+    links: Vec<Key>,
+    is_end: bool,
+}
+
+/// Joins places on the sides of pixels: the two on a pixel's sides by a line, and more of them by lines that meet in
+/// their middle.
+pub(super) fn curves(places: &BTreeMap<Key, DVec2>) -> Vec<Curve> {
+    let mut nodes: BTreeMap<Key, Node> =
+        places.iter().map(|(key, at)| (*key, Node { at: *at, links: Vec::new(), is_end: false })).collect();
+    let link = |nodes: &mut BTreeMap<Key, Node>, [one, other]: [Key; 2]| {
+        for (from, to) in [(one, other), (other, one)] {
+            nodes.entry(from).and_modify(|node| node.links.push(to));
+        }
+    };
+    let pixels: BTreeSet<_> = places
+        .keys()
+        .flat_map(|&[column, row, along]| {
+            let before =
+                if along == 0 { [column, row.wrapping_sub(1)] } else { [column.wrapping_sub(1), row] };
+            [before, [column, row]]
+        })
+        .collect();
+    for [column, row] in pixels {
+        let sides = [
+            [column, row, 0],
+            [column, row, 1],
+            [column, row.wrapping_add(1), 0],
+            [column.wrapping_add(1), row, 1],
+        ];
+        let on: Vec<_> = sides.into_iter().filter(|side| places.contains_key(side)).collect();
+        match on[..] {
+            [] | [_] => {}
+            [one, other] => link(&mut nodes, [one, other]),
+            _ => {
+                let at = on.iter().map(|side| places[side]).sum::<DVec2>() / on.len() as f64;
+                let middle = [column, row, 2];
+                nodes.insert(middle, Node { at, links: Vec::new(), is_end: true });
+                on.into_iter().for_each(|side| link(&mut nodes, [side, middle]));
+            }
+        }
+    }
+    nodes.values_mut().for_each(|node| node.is_end |= node.links.len() != 2);
+    // Curves with ends first, then the closed ones.
+    let ends: Vec<_> = nodes.iter().filter(|(_, node)| node.is_end).map(|(key, _)| *key).collect();
+    let all: Vec<_> = nodes.keys().copied().collect();
+    let mut curves = Vec::new();
+    for start in ends.into_iter().chain(all) {
+        while !nodes[&start].links.is_empty() {
+            curves.push(simplified(&walk(&mut nodes, start)));
+        }
+    }
+    curves
+}
+
+/// Follows a curve from a place to its end, or around, and removes it.
+fn walk(nodes: &mut BTreeMap<Key, Node>, start: Key) -> Curve {
+    let (mut key, mut curve) = (start, vec![nodes[&start].at]);
+    while let Some(next) = nodes.get_mut(&key).and_then(|node| node.links.pop()) {
+        let Some(node) = nodes.get_mut(&next) else { break };
+        if let Some(back) = node.links.iter().position(|link| *link == key) {
+            node.links.swap_remove(back);
+        }
+        curve.push(node.at);
+        if node.is_end {
+            break;
+        }
+        key = next;
+    }
+    curve
+}
+
+/// Leaves out points that are so close to the line between others that nobody sees it (Ramer, Douglas and Peucker).
+fn simplified(curve: &[DVec2]) -> Curve {
+    let mut kept = vec![false; curve.len()];
+    let mut parts = vec![[0, curve.len() - 1]];
+    while let Some([first, last]) = parts.pop() {
+        (kept[first], kept[last]) = (true, true);
+        let (from, along) = (curve[first], curve[last] - curve[first]);
+        let off = |at: DVec2| {
+            let part = ((at - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            // Where both ends are the same, no part of the way counts.
+            (at - from - if part.is_nan() { DVec2::ZERO } else { part * along }).length()
+        };
+        let farthest = (first + 1..last).max_by(|one, other| off(curve[*one]).total_cmp(&off(curve[*other])));
+        if let Some(farthest) = farthest.filter(|farthest| off(curve[*farthest]) > TOLERANCE) {
+            parts.extend([[first, farthest], [farthest, last]]);
+        }
+    }
+    curve.iter().zip(kept).filter_map(|(at, is_kept)| is_kept.then_some(*at)).collect()
+}
