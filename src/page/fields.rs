@@ -41,6 +41,8 @@ pub(super) struct Field {
     /// The name of its material, if it is a colour of that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
+    /// What people read in place of the name, where the scene says so.
+    pub label: Option<String>,
     /// The meaning, the unit and the rule, as people read them.
     pub about: String,
     /// The name of each value, where the table has names.
@@ -129,6 +131,7 @@ fn of(registry: &Registry, shown: Shown, record: &Record) -> Fields {
         Field {
             name: attribute.name().into(),
             material: None,
+            label: None,
             about: about.join("; "),
             each: attribute.each(),
             signs: signs(attribute, values.len()),

@@ -46,7 +46,7 @@ const open = (entity, all) => {
 
 const showFields = ({ name, attributes }) => {
   $('#fields form').replaceChildren(...attributes.flatMap((attribute) => {
-    const { name: of, material, about, each, values, range, signs, whole, fixed } = attribute
+    const { name: of, label: words, material, about, each, values, range, signs, whole, fixed } = attribute
     const boxes = [], sliders = []
     const send = (values) => tryOut(material ?? name, of, values)
     const pick = (picked) => {
@@ -59,7 +59,7 @@ const showFields = ({ name, attributes }) => {
     const rows = values.flatMap((value, index) => {
       const label = document.createElement('label'), box = document.createElement('input')
       const which = values.length > 1 ? ` ${each[index] ?? 'xyz'[index] ?? index + 1}` : ''
-      label.textContent = of + which
+      label.textContent = visible(words ?? of) + which
       label.title = box.title = about
       label.htmlFor = box.id = `field-${of}-${index}`
       if (fixed) {
@@ -74,7 +74,7 @@ const showFields = ({ name, attributes }) => {
       const least = { any: -Infinity, 'not negative': 0, positive: whole ? 1 : (number + reach) / 400 }[signs]
       const [low, high] = range && range[1] - range[0] < 1e4 ? range : [Math.max(number - reach, least), number + reach]
       Object.assign(slider, { type: 'range', min: low, max: high, step: whole ? 1 : (high - low) / 400, value, title: about })
-      slider.setAttribute('aria-label', of + which)
+      slider.setAttribute('aria-label', (words ?? of) + which)
       Object.assign(box, { type: 'number', step: whole ? 1 : 'any', value })
       box.dataset.of = `${name} ${of}`
       if (tried.has(box.dataset.of)) box.classList.add('tried')
