@@ -50,7 +50,13 @@ inventory::submit! {
             Some(clip) => clip.corners(args.get(&CENTER)),
             None => corners(args.get(&BOX).unwrap_or_default()),
         };
-        let Reduced { formula, denominator, warnings } = field::reduced(args.get(&FORMULA));
+        let (mut field, mut given) = (args.get(&FORMULA), Vec::new());
+        while let Some([rest, condition]) = field.conditional() {
+            given.push(("formula", condition));
+            field = rest;
+        }
+        given.extend(args.get(&WHERE).map(|condition| ("where", condition)));
+        let Reduced { formula, denominator, warnings } = field::reduced(field);
         let ends = corners.map(|corner| corner.to_array());
         let (formula, domain) = (formula.clone().within(ends), formula.domain(ends));
         let is_clipped = clip.is_some();
@@ -83,14 +89,18 @@ inventory::submit! {
                 },
             ));
         }
-        let condition: Vec<_> =
-            args.get(&WHERE).into_iter().flat_map(|given| [given.domain(ends), Some(given)]).flatten().collect();
-        if condition.iter().any(|condition| field::bounds(condition, corners).high < 0.0) {
-            return Err(Refusal {
-                attribute: Some("where"),
-                message: format!("has a condition that is nowhere 0 or more in {extent}"),
-                help: "the surface is where this formula is not below 0: change it, or its sign",
-            });
+        let mut condition = Vec::new();
+        for (attribute, given) in given {
+            for given in [given.domain(ends), Some(given)].into_iter().flatten() {
+                if field::bounds(&given, corners).high < 0.0 {
+                    return Err(Refusal {
+                        attribute: Some(attribute),
+                        message: format!("has a condition that is nowhere 0 or more in {extent}"),
+                        help: "the surface is where this formula is not below 0: change it, or its sign",
+                    });
+                }
+                condition.push(given);
+            }
         }
         let is_negated = denominator.is_some_and(|denominator| field::bounds(&denominator, corners).low <= 0.0);
         let surface = Surface { formula, domain, condition, is_negated, corners, is_clipped, why_not_closed: OnceLock::new() };
@@ -131,7 +141,7 @@ struct Surface {
 impl Surface {
     fn find_why_not_closed(&self) -> Option<&'static str> {
         if !self.condition.is_empty() {
-            Some("its `where` cuts its surface")
+            Some("its condition cuts its surface")
         } else if self.domain.is_some() {
             Some("its formula is not defined everywhere in its box")
         } else if self.is_negated {

@@ -54,8 +54,21 @@ fn where_a_second_formula_is_below_0_there_is_no_surface() {
     // By the difference of two coordinates, and where the surface has two parts.
     are_alike(
         "implicit own { material white formula \"x^4 + y^4 + z^4 - 1\" where \"x^2 - y*z - 0.1\" box -2 -2 -2 2 2 2 }",
-        "implicit own { material white formula \"if(x^2 - y*z - 0.1 > 0, x^4 + y^4 + z^4 - 1, 1)\" box -2 -2 -2 2 2 2 }",
+        "implicit own { material white formula \"if(x^2 - y*z - 0.1 > 0, x^4 + y^4 + z^4 - 1, 1 + z^2)\" box -2 -2 -2 2 2 2 }",
     );
+}
+
+#[test]
+fn an_if_or_a_max_that_is_a_condition_is_where() {
+    let quartic = |given: &str| format!("implicit own {{ material white {given} box -2 -2 -2 2 2 2 }}");
+    let own = quartic("formula \"x^4 + y^4 + z^4 - 1\" where \"x^2 - y*z - 0.1\"");
+    for formula in [
+        "if(x^2 - y*z - 0.1 > 0, x^4 + y^4 + z^4 - 1, 1)",
+        "if(x^2 - y*z < 0.1, 1, x^4 + y^4 + z^4 - 1)",
+        "max(abs(x^4 + y^4 + z^4 - 1), 0.1 + y*z - x^2)",
+    ] {
+        are_alike(&own, &quartic(&format!("formula \"{formula}\"")));
+    }
 }
 
 #[test]

@@ -110,7 +110,7 @@ impl<'s> Factors<'s> {
     }
 }
 
-fn has_variable(steps: &[Step]) -> bool {
+pub(super) fn has_variable(steps: &[Step]) -> bool {
     steps.iter().any(|step| matches!(step, Step::Variable(_)))
 }
 
@@ -125,7 +125,7 @@ pub(super) fn start_of_last(steps: &[Step]) -> usize {
 }
 
 /// Returns the text of a formula in x, y and z.
-fn written(steps: &[Step]) -> String {
+pub(super) fn written(steps: &[Step]) -> String {
     /// A text, and the precedence of its last operation: sums 0, products 1, signs 2, powers 3, values 4.
     type Part = (String, u8);
     fn within((text, binds): Part, least: u8) -> String {

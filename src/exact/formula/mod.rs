@@ -2,6 +2,7 @@
 
 mod along;
 pub mod cells;
+mod condition;
 mod domain;
 mod factors;
 pub mod field;
