@@ -106,6 +106,7 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "has a ramp that ends where it begins",
         "has arrowheads that are",
         "more than 100 ticks",
+        "more than 1024 strokes",
         "stands still",
         "in nearly every direction",
         "has its `point` at its `location`",
