@@ -28,15 +28,18 @@ struct Angular<const OF_THE_NOTES: bool> {
 impl<const OF_THE_NOTES: bool> Shader for Angular<OF_THE_NOTES> {
     /// Returns the same colours above and below the centre: the notes' test for the lower half, `coord.y < 3.0`, is
     /// always true.
-    #[inline]
-    fn ambient(&self, _material: &Material, at: &SurfacePoint) -> Rgb {
-        let DVec3 { x, y, .. } = at.position - self.anchor.origin;
-        self.hues.colour::<OF_THE_NOTES>(DVec2::new(x, -y.abs()))
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let from = |axis: usize| at.position[axis] - Interval::constant(self.anchor.origin[axis]);
-        Some(LookBounds { ambient: self.hues.enclose([from(0), -from(1).abs()]), ..material.into() })
+    #[inline(always)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let from = |axis: usize| at.position[axis] - N::constant(self.anchor.origin[axis]);
+        Some(match of {
+            Reflectivity::Ambient => self.hues.colour::<OF_THE_NOTES, N>([from(0), -from(1).abs()]),
+            _ => constants(material.reflectivity(of)),
+        })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -22,47 +22,24 @@ struct Blend {
     other: Arc<Material>,
 }
 
-impl Blend {
-    /// Returns the fraction of the other material at a point; NaN counts as 0.
-    fn part(&self, at: &SurfacePoint) -> f64 {
-        let part = self.by.at(at.variables());
-        if part > 0.0 { part.min(1.0) } else { 0.0 }
-    }
-
-    fn blend(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
-        if own == other { own } else { between(own, other, self.part(at)) }
-    }
-}
-
 impl Shader for Blend {
     fn sees(&self) -> ShaderInputs {
         ShaderInputs::of(&self.by)
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.blend(material.ambient, self.other.ambient, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.blend(material.diffuse, self.other.diffuse, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.blend(material.specular, self.other.specular, at)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let n = Interval::<F>::constant;
-        let part = at.value(&self.by)?.max(n(0.0)).min(n(1.0));
-        let blend = |own: Rgb, other: Rgb| {
-            per_axis(|channel| n(own[channel]) + part * (n(other[channel]) - n(own[channel])))
-        };
-        let (own, other) = (material, &*self.other);
-        Some(LookBounds {
-            ambient: blend(own.ambient, other.ambient),
-            diffuse: blend(own.diffuse, other.diffuse),
-            specular: blend(own.specular, other.specular),
-        })
+    /// A formula without a value counts as 0.
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let [own, other] = [material.reflectivity(of), self.other.reflectivity(of)];
+        if own == other {
+            return Some(constants(own));
+        }
+        let part = N::constant(0.0).max(at.value(&self.by)?).min(N::constant(1.0));
+        Some(N::mean(constants(own), constants(other), part))
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -23,28 +23,15 @@ impl Bend for Bumps {
     const SEES: ShaderInputs = ShaderInputs::POSITION;
 
     /// Leans the normal against the slope of the height along the surface.
-    fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3 {
+    fn bent<N: Number>(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]> {
         let slope = |axis: usize| {
             let along =
-                |other| Dual { value: at.position[other], slope: if other == axis { 1.0 } else { 0.0 } };
-            self.0.at(per_axis(along)).slope
-        };
-        let gradient = DVec3::from(per_axis(slope));
-        let bent = normal - (gradient - gradient.dot(normal) * normal);
-        if bent.is_finite() { bent.try_normalize().unwrap_or(normal) } else { normal }
-    }
-
-    fn enclose<F: Precise>(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        let n = Interval::<F>::constant;
-        let slope = |axis: usize| {
-            let along = |other| Dual { value: at.position[other], slope: n(f64::from(other == axis)) };
+                |other| Dual { value: at.position[other], slope: N::constant(f64::from(other == axis)) };
             self.0.at(per_axis(along)).slope
         };
         let gradient = per_axis(slope);
         let rise = dot(gradient, normal);
         let bent = per_axis(|axis| normal[axis] - (gradient[axis] - rise * normal[axis]));
-        let length = dot(bent, bent).sqrt();
-        let is_known = self.0.is_enclosed() && length.is_bounded() && length.low > n(0.0).low;
-        is_known.then(|| per_axis(|axis| bent[axis] / length))
+        if at.plain.is_some() || self.0.is_enclosed() { N::along(bent, normal) } else { None }
     }
 }

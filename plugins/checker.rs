@@ -23,34 +23,32 @@ struct Checker {
     other: Arc<Material>,
 }
 
-impl Checker {
-    /// Returns the colour of the square at a point, or the mean over the patch around it; without u and v, the
-    /// surface's own colour.
-    #[inline]
-    fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
-        if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {
-            let (low, high) = (low * self.squares, high * self.squares);
-            return between(own, other, odd_part(0.5 * (low + high), high - low));
-        }
-        if is_odd(self.tile(at)) { other } else { own }
-    }
-}
-
 impl Shader for Checker {
     fn sees(&self) -> ShaderInputs {
         ShaderInputs { patch: true, ..ShaderInputs::UV }
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colour(material.ambient, self.other.ambient, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colour(material.diffuse, self.other.diffuse, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colour(material.specular, self.other.specular, at)
+    /// Returns the colour of the square at a point, or the mean over the patch around it; without u and v, the surface's own
+    /// colour.
+    #[inline(always)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let (own, other) = (constants(material.reflectivity(of)), constants(self.other.reflectivity(of)));
+        let n = N::constant;
+        let squares = |uv: [N; 2]| [uv[0] * n(self.squares.x), uv[1] * n(self.squares.y)];
+        let Some(uv) = at.uv else { return Some(N::any(-1.0, 1.0).either(own, other)) };
+        let patch = at.patch.and_then(|patch| patch.uv).map(|[low, high]| {
+            let ([left, low], [right, high]) = (squares(low), squares(high));
+            [[n(0.5) * (left + right), n(0.5) * (low + high)], [right - left, high - low]]
+        });
+        // Rounding must not begin a square beyond the last one.
+        let [column, row] = squares(uv);
+        let place = [column.min(n(self.squares.x - 0.5)), row.min(n(self.squares.y - 0.5))];
+        Some(tiled(own, other, place, patch))
     }
 
     #[inline]
@@ -58,30 +56,6 @@ impl Shader for Checker {
         // Rounding must not begin a square beyond the last one.
         let square = at.uv.map(|uv| (uv * self.squares).floor().min(self.squares - 1.0));
         square.unwrap_or(DVec2::ZERO)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let square = |axis: usize| {
-            let count = self.squares[axis];
-            let square = (at.uv?[axis] * Interval::constant(count)).certain_floor()?;
-            Some(square.min(count - 1.0))
-        };
-        let [own, other] = [LookBounds::from(material), LookBounds::from(&*self.other)];
-        // As of a point, the last square has no end.
-        Some(match (square(0), square(1), at.patch.and_then(|patch| patch.uv)) {
-            (Some(column), Some(row), None) if !is_odd(DVec2::new(column, row)) => own,
-            (Some(_), Some(_), None) => other,
-            (.., None) => own.hull(&other),
-            (.., Some([low, high])) => {
-                let squares = |uv: [Interval; 2], axis: usize| {
-                    Interval::<F>::from_f64(uv[axis] * Interval::constant(self.squares[axis]))
-                };
-                let half = Interval::constant(0.5);
-                let middle = [0, 1].map(|axis| half * (squares(low, axis) + squares(high, axis)));
-                let widths = [0, 1].map(|axis| squares(high, axis) - squares(low, axis));
-                own.mean(&other, odd_part_bounds(middle, widths))
-            }
-        })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -29,10 +29,6 @@ impl Faces {
         at.face.unwrap_or(0)
     }
 
-    fn colour(&self, at: &SurfacePoint) -> Rgb {
-        self.colours[Self::face(at) as usize % self.colours.len()]
-    }
-
     fn most(&self) -> Rgb {
         self.colours.iter().fold(Rgb::ZERO, |most, colour| most.max(*colour))
     }
@@ -43,31 +39,26 @@ impl Shader for Faces {
         ShaderInputs::FACE
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.ambient * self.colour(at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.diffuse * self.colour(at)
+    #[inline(always)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own: [N; 3] = constants(material.reflectivity(of));
+        if of == Reflectivity::Specular {
+            return Some(own);
+        }
+        let coloured = |colour: &Rgb| product(own, constants(*colour));
+        match at.face {
+            None if at.plain.is_none() => self.colours.iter().map(coloured).reduce(hull),
+            face => Some(coloured(&self.colours[face.unwrap_or(0) as usize % self.colours.len()])),
+        }
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         DVec2::new(Self::face(at).into(), 0.0)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let look = LookBounds::from(material);
-        let times = |own: [Interval<F>; 3]| {
-            let of = |colour: &Rgb| per_axis(|channel| own[channel] * Interval::constant(colour[channel]));
-            let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-                per_axis(|channel| one[channel].hull(other[channel]))
-            };
-            match at.face {
-                Some(face) => Some(of(&self.colours[face as usize % self.colours.len()])),
-                None => self.colours.iter().map(of).reduce(hull),
-            }
-        };
-        Some(LookBounds { ambient: times(look.ambient)?, diffuse: times(look.diffuse)?, ..look })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

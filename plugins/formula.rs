@@ -41,46 +41,26 @@ impl ByFormula {
     }
 }
 
-fn colour(formulas: Option<&Formulas>, own: Rgb, at: &SurfacePoint) -> Rgb {
-    let Some(formulas) = formulas else { return own };
-    let values = at.variables();
-    let channel = |formula: &SurfaceField| {
-        let value = formula.at(values);
-        if value > 0.0 { value.min(MAX_REFLECTIVITY) } else { 0.0 }
-    };
-    Rgb::from(formulas.each_ref().map(channel))
-}
-
 impl Shader for ByFormula {
     fn sees(&self) -> ShaderInputs {
         self.all().map(ShaderInputs::of).fold(ShaderInputs::POSITION, ShaderInputs::and)
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        colour(self.ambient.as_ref(), material.ambient, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        colour(self.diffuse.as_ref(), material.diffuse, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        colour(self.specular.as_ref(), material.specular, at)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let n = Interval::<F>::constant;
-        let channel = |formula: &SurfaceField| Some(at.value(formula)?.max(n(0.0)).min(n(MAX_REFLECTIVITY)));
-        let colour = |formulas: &Option<Formulas>, own| match formulas {
-            Some([red, green, blue]) => Some([channel(red)?, channel(green)?, channel(blue)?]),
-            None => Some(own),
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let formulas = match of {
+            Reflectivity::Ambient => &self.ambient,
+            Reflectivity::Diffuse => &self.diffuse,
+            Reflectivity::Specular => &self.specular,
         };
-        let own = LookBounds::from(material);
-        Some(LookBounds {
-            ambient: colour(&self.ambient, own.ambient)?,
-            diffuse: colour(&self.diffuse, own.diffuse)?,
-            specular: colour(&self.specular, own.specular)?,
-        })
+        let Some([red, green, blue]) = formulas else { return Some(constants(material.reflectivity(of))) };
+        let (least, most) = (N::constant(0.0), N::constant(MAX_REFLECTIVITY));
+        let channel = |formula: &SurfaceField| Some(least.max(at.value(formula)?).min(most));
+        Some([channel(red)?, channel(green)?, channel(blue)?])
     }
 
     /// The formulas over all of space bound the colours.

@@ -86,32 +86,28 @@ impl Image {
     }
 
     /// Encloses the mean between such u and v; `None` where a blend may be shown.
-    fn enclosed_mean<F: Precise>(&self, uv: [[Interval; 2]; 2]) -> Option<[Interval<F>; 3]> {
+    fn enclosed_mean<N: Number>(&self, uv: [[N; 2]; 2]) -> Option<[N; 3]> {
         let size = self.size();
-        let place = |along: Interval, axis: usize| {
-            (along * Interval::constant(size[axis]))
-                .max(Interval::constant(0.0))
-                .min(Interval::constant(size[axis]))
+        let place = |along: N, axis: usize| {
+            let size = N::constant(size[axis]);
+            (along * size).max(N::constant(0.0)).min(size)
         };
         let [low, high] = uv.map(|[u, v]| [place(u, 0), place(v, 1)]);
         // Near by, interpolated texels are shown as they are.
-        let is_far = !self.smooth || (0..2).any(|axis| (high[axis] - low[axis]).low > 1.0);
+        let is_far = !self.smooth || (0..2).any(|axis| (high[axis] - low[axis]).bounds()[0] > 1.0);
         if is_far { self.texture.enclose_mean_repeated([low, high]) } else { None }
     }
 
-    /// Encloses the colours at points with such u and v.
-    fn enclosed<F: Precise>(&self, uv: [Interval; 2]) -> [Interval<F>; 3] {
-        let (size, n) = (self.size(), Interval::constant);
-        let place = [uv[0] * n(size.x), uv[1] * n(size.y)];
+    /// Encloses the colours at points with such u and v; anything where they are not known.
+    fn enclosed<N: Number>(&self, uv: Option<[N; 2]>) -> [N; 3] {
+        let any = || [N::any(0.0, self.texture.brightest()); 3];
+        let Some([u, v]) = uv else { return any() };
+        let size = self.size();
+        let place = [u * N::constant(size.x), v * N::constant(size.y)];
         if self.smooth {
-            let most = Interval::constant(0.0).hull(Interval::constant(self.texture.brightest()));
-            return self.texture.enclose_blended(place, |at| self.texel(at)).unwrap_or([most; 3]);
+            return self.texture.enclose_blended(place, |at| self.texel(at)).unwrap_or_else(any);
         }
-        let range = |axis: usize| {
-            let Interval { low, high } = place[axis];
-            (low.floor() as i64..=high.floor() as i64).map(move |at| self.wrapped(at as f64, axis))
-        };
-        self.texture.enclose(range(0), range(1))
+        N::table(place, || self.texture.brightest(), |[x, y]| self.texel(DVec2::new(x, y)))
     }
 }
 
@@ -120,12 +116,23 @@ impl Shader for Image {
         ShaderInputs { patch: true, ..ShaderInputs::UV }
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.ambient * self.colour(at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.diffuse * self.colour(at)
+    #[inline(always)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own: [N; 3] = constants(material.reflectivity(of));
+        if of == Reflectivity::Specular {
+            return Some(own);
+        }
+        let mean = || at.patch.and_then(|patch| self.enclosed_mean(patch.uv?));
+        let texel = match at.plain {
+            Some(at) => constants(self.colour(at)),
+            None => mean().unwrap_or_else(|| self.enclosed(at.uv)),
+        };
+        Some(product(own, texel))
     }
 
     fn cuts_out(&self) -> bool {
@@ -140,22 +147,12 @@ impl Shader for Image {
         self.texture.covers_in_part()
     }
 
-    fn coverage(&self, at: &SurfacePoint) -> f64 {
-        self.alpha(at)
+    fn coverage<N: Number>(&self, at: &Point<N>) -> N {
+        at.plain.map_or_else(|| N::any(0.0, 1.0), |at| N::constant(self.alpha(at)))
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         self.place(at).floor().min(self.size() - 1.0)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        // Without known u and v, the colours may be those of any texel.
-        let unknown = [Interval::<f64>::whole(); 2];
-        let any = self.enclosed::<F>(at.uv.unwrap_or(unknown));
-        let mean = at.patch.and_then(|patch| self.enclosed_mean(patch.uv?));
-        let (look, texel) = (LookBounds::from(material), mean.unwrap_or(any));
-        let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * texel[channel]);
-        Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 
     /// The material's colours are the bounds, times the brightest texel's.

@@ -81,14 +81,10 @@ impl Lines {
         (all / extent).clamp(0.0, 1.0)
     }
 
-    fn blend(&self, own: Rgb, line: Rgb, at: &SurfacePoint) -> Rgb {
-        if own == line { own } else { between(own, line, self.part(at)) }
-    }
-
     /// Tells whether all points in a box are on lines, or between them; `None` where that is open. A patch is at most as wide
     /// as the box that contains it.
-    fn is_line<F: Precise>(&self, at: &PointBounds<F>) -> Option<bool> {
-        let n = Interval::<F>::constant;
+    fn is_line<N: Number>(&self, at: &Point<N>) -> Option<bool> {
+        let n = N::constant;
         let slopes = per_axis(|axis| {
             let place =
                 |own: usize| Dual { value: at.position[own], slope: n(f64::from(u8::from(own == axis))) };
@@ -97,8 +93,8 @@ impl Lines {
         let (value, slope) = (slopes[0].value, slopes.map(|along| along.slope));
         let value = match self.spacing {
             Some(spacing) => {
-                let nearest = (value / n(spacing) + n(0.5)).certain_floor()?;
-                value - n(spacing) * n(nearest)
+                let [nearest, last] = (value / n(spacing) + n(0.5)).floors();
+                (nearest == last).then(|| value - n(spacing) * n(nearest))?
             }
             None => value,
         }
@@ -111,12 +107,15 @@ impl Lines {
             }
             None => dot(slope, slope).sqrt().hull(n(0.0)),
         };
-        let wide = at.position.iter().fold(n(0.0), |all, side| all + Interval::point(side.width()));
-        let off = value - size * n(self.half);
-        if off.low > (size * wide).high {
+        let wide = at.position.iter().fold(n(0.0), |all, side| {
+            let [low, high] = side.bounds();
+            all + n(high) - n(low)
+        });
+        let (off, reach) = (value - size * n(self.half), size * wide);
+        if (off - reach).bounds()[0] > 0.0 {
             return Some(false);
         }
-        (off.high < -(size * wide).high && self.spacing.is_none()).then_some(true)
+        ((off + reach).bounds()[1] < 0.0 && self.spacing.is_none()).then_some(true)
     }
 }
 
@@ -125,25 +124,35 @@ impl Shader for Lines {
         ShaderInputs { patch: true, ..ShaderInputs::NORMAL }.and(self.base.sees())
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.blend(self.base.ambient(material, at), self.line.ambient, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.blend(self.base.diffuse(material, at), self.line.diffuse, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.blend(self.base.specular(material, at), self.line.specular, at)
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let (base, line) =
+            (N::looks(&*self.base).reflects(of, material, at)?, constants(self.line.reflectivity(of)));
+        if base == line {
+            return Some(base);
+        }
+        if let Some(at) = at.plain {
+            return Some(N::mean(base, line, N::constant(self.part(at))));
+        }
+        Some(match self.is_line(at).filter(|_| self.pixels == 0.0) {
+            Some(true) => line,
+            Some(false) => base,
+            None => hull(base, line),
+        })
     }
 
     fn covers_in_part(&self) -> bool {
         self.base.covers_in_part()
     }
 
-    fn coverage(&self, at: &SurfacePoint) -> f64 {
-        let covered = self.base.coverage(at);
-        covered + self.part(at) * (1.0 - covered)
+    fn coverage<N: Number>(&self, at: &Point<N>) -> N {
+        let covered = N::looks(&*self.base).covers(at);
+        let part = at.plain.map_or_else(|| N::any(0.0, 1.0), |at| N::constant(self.part(at)));
+        covered + part * (N::constant(1.0) - covered)
     }
 
     fn level(&self, at: &SurfacePoint) -> f64 {
@@ -156,15 +165,6 @@ impl Shader for Lines {
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         let is_line = self.part(&SurfacePoint { patch: None, ..*at });
         2.0 * self.base.tile(at) + DVec2::new(is_line, 0.0)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let (base, line) = (enclosed(&*self.base, material, at)?, LookBounds::from(&*self.line));
-        Some(match self.is_line(at).filter(|_| self.pixels == 0.0) {
-            Some(true) => line,
-            Some(false) => base,
-            None => base.hull(&line),
-        })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

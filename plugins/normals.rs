@@ -40,10 +40,24 @@ struct Normals {
 
 impl Normals {
     /// Returns the components of the normal at u and v, blended from the four nearest texels.
-    fn parts(&self, uv: DVec2) -> DVec3 {
-        let size = self.texture.size().map(f64::from);
-        let place = (uv * self.repeat).map(|along| along - along.floor()) * DVec2::from(size);
-        2.0 * self.texture.blended(place, |column, row| self.texture.numbers(column, row)) - 1.0
+    fn parts<N: Number>(&self, uv: [N; 2]) -> Option<[N; 3]> {
+        let (n, size) = (N::constant, self.texture.size().map(f64::from));
+        let numbers = match uv.map(N::plain) {
+            [Some(u), Some(v)] => {
+                let place = (DVec2::new(u, v) * self.repeat).map(|along| along - along.floor());
+                let texel = |column, row| self.texture.numbers(column, row);
+                constants(self.texture.blended(place * DVec2::from(size), texel))
+            }
+            _ => {
+                let texel = |at: DVec2| {
+                    let wrapped = |axis: usize| at[axis].rem_euclid(size[axis].max(1.0)) as u32;
+                    self.texture.numbers(wrapped(0), wrapped(1))
+                };
+                let place = |axis: usize| uv[axis] * n(self.repeat[axis] * size[axis]);
+                self.texture.enclose_blended([place(0), place(1)], texel)?
+            }
+        };
+        Some(numbers.map(|part| n(2.0) * part - n(1.0)))
     }
 }
 
@@ -51,27 +65,13 @@ impl Bend for Normals {
     const SEES: ShaderInputs = ShaderInputs { tangents: true, ..ShaderInputs::UV };
 
     /// Where there are no u and v, the normal is straight.
-    fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3 {
-        let (Some(uv), Some([along_u, along_v])) = (at.uv, at.tangents) else { return normal };
-        let DVec3 { x, y, z } = self.parts(uv);
-        let bent = self.strength * (x * along_u + y * along_v) + z.max(0.0) * normal;
-        bent.try_normalize().unwrap_or(normal)
-    }
-
-    fn enclose<F: Precise>(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        let (n, [along_u, along_v], size) =
-            (Interval::<F>::constant, at.tangents?, self.texture.size().map(f64::from));
-        let place = |axis: usize| Some(at.uv?[axis] * Interval::constant(self.repeat[axis] * size[axis]));
-        let texel = |at: DVec2| {
-            let wrapped = |axis: usize| at[axis].rem_euclid(size[axis].max(1.0)) as u32;
-            self.texture.numbers(wrapped(0), wrapped(1))
+    fn bent<N: Number>(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]> {
+        let (Some(uv), Some([along_u, along_v])) = (at.uv, at.tangents) else {
+            return at.plain.map(|_| normal);
         };
-        let parts = self.texture.enclose_blended::<F>([place(0)?, place(1)?], texel)?;
-        let [x, y, z] = parts.map(|part| n(2.0) * part - n(1.0));
-        let slope = |axis: usize| n(self.strength) * (x * along_u[axis] + y * along_v[axis]);
-        let bent = per_axis(|axis| slope(axis) + z.max(n(0.0)) * normal[axis]);
-        let length = dot(bent, bent).sqrt();
-        let is_known = length.is_bounded() && length.low > n(0.0).low;
-        is_known.then(|| per_axis(|axis| bent[axis] / length))
+        let [x, y, z] = self.parts(uv)?;
+        let (strength, z) = (N::constant(self.strength), z.max(N::constant(0.0)));
+        let slope = |axis: usize| strength * (x * along_u[axis] + y * along_v[axis]);
+        N::along(per_axis(|axis| slope(axis) + z * normal[axis]), normal)
     }
 }

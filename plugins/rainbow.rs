@@ -49,17 +49,19 @@ struct Rainbow<const OF_THE_NOTES: bool> {
 }
 
 impl<const OF_THE_NOTES: bool> Shader for Rainbow<OF_THE_NOTES> {
-    #[inline]
-    fn ambient(&self, _material: &Material, at: &SurfacePoint) -> Rgb {
-        let from = at.position - self.anchor.origin;
-        let toward =
-            if OF_THE_NOTES { from.truncate() } else { DVec2::from(self.axes.map(|axis| from[axis])) };
-        self.hues.colour::<OF_THE_NOTES>(toward)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let from = |axis: usize| at.position[axis] - Interval::constant(self.anchor.origin[axis]);
-        Some(LookBounds { ambient: self.hues.enclose(self.axes.map(from)), ..material.into() })
+    #[inline(always)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let axes = if OF_THE_NOTES { [0, 1] } else { self.axes };
+        let from = |axis: usize| at.position[axis] - N::constant(self.anchor.origin[axis]);
+        Some(match of {
+            Reflectivity::Ambient => self.hues.colour::<OF_THE_NOTES, N>([from(axes[0]), from(axes[1])]),
+            _ => constants(material.reflectivity(of)),
+        })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

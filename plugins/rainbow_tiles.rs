@@ -32,24 +32,20 @@ impl<const OF_THE_NOTES: bool> Shader for RainbowTiles<OF_THE_NOTES> {
         ShaderInputs::PATCH
     }
 
-    #[inline]
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        let along = DVec2::new(at.position.x, at.position.z);
-        let hue = || self.hues.colour::<OF_THE_NOTES>((at.position - self.anchor.origin).truncate());
-        match &at.patch {
-            Some(patch) => between(hue(), material.ambient, self.grid.odd_part(along, [0, 2], patch)),
-            None if self.grid.is_odd(along) => material.ambient,
-            None => hue(),
+    #[inline(always)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own = constants(material.reflectivity(of));
+        if of != Reflectivity::Ambient {
+            return Some(own);
         }
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let [x, y, _] = at.position;
-        let from =
-            [x - Interval::constant(self.anchor.origin.x), y - Interval::constant(self.anchor.origin.y)];
-        let odd = LookBounds::from(material);
-        let even = LookBounds { ambient: self.hues.enclose(from), ..odd };
-        Some(self.grid.look(at, [0, 2], even, odd))
+        let from = |axis: usize| at.position[axis] - N::constant(self.anchor.origin[axis]);
+        let hue = self.hues.colour::<OF_THE_NOTES, N>([from(0), from(1)]);
+        Some(self.grid.colour(at, [0, 2], hue, own))
     }
 
     #[inline]

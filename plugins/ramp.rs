@@ -52,14 +52,6 @@ impl Ramp {
     fn last(&self) -> usize {
         self.colours.len() - 1
     }
-
-    /// Returns the factor of the colours at a point; NaN counts as the smallest value.
-    fn factor(&self, at: &SurfacePoint) -> Rgb {
-        let part = (self.by.at(at.variables()) - self.from) / (self.to - self.from);
-        let place = (if part > 0.0 { part.min(1.0) } else { 0.0 }) * self.last() as f64;
-        let index = (place as usize).min(self.last() - 1);
-        between(self.colours[index], self.colours[index + 1], place - index as f64)
-    }
 }
 
 impl Shader for Ramp {
@@ -67,36 +59,26 @@ impl Shader for Ramp {
         ShaderInputs::of(&self.by)
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.ambient * self.factor(at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.diffuse * self.factor(at)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let n = Interval::<F>::constant;
-        let last = n(self.last() as f64);
+    /// A formula without a value counts as the smallest.
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let (n, own): (_, [N; 3]) = (N::constant, constants(material.reflectivity(of)));
+        if of == Reflectivity::Specular {
+            return Some(own);
+        }
         let part = (at.value(&self.by)? - n(self.from)) / (n(self.to) - n(self.from));
-        let place = (part * last).max(n(0.0)).min(last);
-        // For each two neighbouring colours, the blend between them at these places.
+        let place = n(0.0).max(part).min(n(1.0)) * n(self.last() as f64);
+        // Between each two neighbouring colours.
         let of = |index: usize| {
-            let along = (place - n(index as f64)).max(n(0.0)).min(n(1.0));
-            let (one, next) = (self.colours[index], self.colours[index + 1]);
-            per_axis(|channel| n(one[channel]) + along * (n(next[channel]) - n(one[channel])))
+            let along = n(0.0).max(place - n(index as f64)).min(n(1.0));
+            N::mean(constants(self.colours[index]), constants(self.colours[index + 1]), along)
         };
-        let meets = |index: &usize| {
-            let range = place.coarse();
-            range.low <= (index + 1) as f64 && *index as f64 <= range.high
-        };
-        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            per_axis(|channel| one[channel].hull(other[channel]))
-        };
-        let factor = (0..self.last()).filter(meets).map(of).reduce(hull)?;
-        let times = |own: [Interval<F>; 3]| per_axis(|channel| own[channel] * factor[channel]);
-        let look = LookBounds::from(material);
-        Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
+        let [first, last] = place.floors().map(|at| (at as usize).min(self.last() - 1));
+        Some(product(own, (first..=last).map(of).reduce(hull)?))
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -36,25 +36,21 @@ impl Shader for TwoSided {
         ShaderInputs::NORMAL
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at).ambient
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at).diffuse
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.material(material, at).specular
+    /// Proofs take either side.
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        Some(match at.plain {
+            Some(at) => constants(self.material(material, at).reflectivity(of)),
+            None => hull(constants(material.reflectivity(of)), constants(self.back.reflectivity(of))),
+        })
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         DVec2::new(if at.side == Side::Inside { 1.0 } else { 0.0 }, 0.0)
-    }
-
-    /// Those of both sides.
-    fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        Some(LookBounds::from(material).hull(&LookBounds::from(&*self.back)))
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -122,13 +122,17 @@ struct Textured(Picture);
 
 impl Shader for Textured {
     #[inline(always)]
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.ambient * Rgb::from(self.0.colour(at.position.to_array()))
-    }
-
-    #[inline(always)]
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.diffuse * Rgb::from(self.0.colour(at.position.to_array()))
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own = constants(material.reflectivity(of));
+        Some(match of {
+            Reflectivity::Specular => own,
+            _ => product(own, self.0.colour(at.position)),
+        })
     }
 
     fn cuts_out(&self) -> bool {
@@ -143,20 +147,14 @@ impl Shader for Textured {
         self.0.texture.covers_in_part()
     }
 
-    fn coverage(&self, at: &SurfacePoint) -> f64 {
-        self.0.alpha(at.position)
+    fn coverage<N: Number>(&self, at: &Point<N>) -> N {
+        at.plain.map_or_else(|| N::any(0.0, 1.0), |at| N::constant(self.0.alpha(at.position)))
     }
 
     #[inline]
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         let [column, row] = self.0.texel(at.position);
         DVec2::new(column.into(), row.into())
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let (look, texel) = (LookBounds::from(material), self.0.colour(at.position));
-        let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * texel[channel]);
-        Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 
     /// The material's colours are the bounds, times the brightest texel's.

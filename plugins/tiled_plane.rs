@@ -4,7 +4,7 @@ use super::fplane::{self, DIMENSIONS, XDIR, sides};
 use super::plane;
 use std::sync::Arc;
 use tabray::prelude::*;
-use tabray::shapes::rectangle::along_sides;
+use tabray::shapes::rectangle::known_sides;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =
     Pparm::required("altmaterial", "the material of every other tile").not_dumped();
@@ -29,8 +29,7 @@ const OFFSET: f64 = 100_000.0;
 inventory::submit! {
     Entity::shape("tiled_plane", "an infinite plane, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
         let tiles = Tiles {
-            sides: sides(args)?,
-            given: [args.get(&plane::NORMAL), args.get(&XDIR)],
+            sides: known_sides(args.get(&plane::NORMAL), args.get(&XDIR), sides(args)?),
             dimensions: args.get(&DIMENSIONS),
             origin: args.get(&ORIGIN),
             other: args.get(&ALTMATERIAL),
@@ -43,9 +42,7 @@ inventory::submit! {
 }
 
 struct Tiles {
-    sides: [DVec3; 2],
-    /// The normal and `xdir`, of any length.
-    given: [DVec3; 2],
+    sides: [[Known; 3]; 2],
     dimensions: DVec2,
     /// The point from which tiles are counted; `None` for the world's origin, with [`OFFSET`].
     origin: Option<DVec3>,
@@ -55,34 +52,31 @@ struct Tiles {
 }
 
 impl Tiles {
+    /// Returns the place of a point in units of tiles.
     #[inline(always)]
-    fn tile_at(&self, at: DVec3) -> DVec2 {
-        let (at, offset) = self.origin.map_or((at, OFFSET), |origin| (at - origin, 0.0));
-        let tile = |side: usize| ((self.sides[side].dot(at) + offset) / self.dimensions[side]).floor();
-        DVec2::new(tile(0), tile(1))
+    fn place<N: Number>(&self, at: [N; 3]) -> [N; 2] {
+        let n = N::constant;
+        let (at, offset) = match self.origin {
+            Some(origin) => (per_axis(|axis| at[axis] - n(origin[axis])), 0.0),
+            None => (at, OFFSET),
+        };
+        let [u, v] = self.along(at);
+        [(u + n(offset)) / n(self.dimensions.x), (v + n(offset)) / n(self.dimensions.y)]
     }
 
-    /// Returns the part of a patch around a point that is odd.
+    /// Returns the parts of a vector along the sides.
+    #[inline(always)]
+    fn along<N: Number>(&self, vector: [N; 3]) -> [N; 2] {
+        let along = |side: usize| dot(Known::vector(&self.sides[side]), vector);
+        [along(0), along(1)]
+    }
+
+    /// Returns the middle and the widths of a patch, in units of tiles.
     #[inline(never)]
-    fn odd_part(&self, at: DVec3, patch: &Patch) -> f64 {
-        let (from, offset) = self.origin.map_or((at, OFFSET), |origin| (at - origin, 0.0));
-        let middle = DVec2::from(self.sides.map(|side| side.dot(from) + offset)) / self.dimensions;
-        odd_part(middle, DVec2::from(self.sides.map(|side| patch.extent(side))) / self.dimensions)
-    }
-
-    /// Returns the colour of the tile at a point, or the mean over the patch around it.
-    #[inline(always)]
-    fn colour(&self, own: Rgb, other: Rgb, at: &SurfacePoint) -> Rgb {
-        if let Some(patch) = &at.patch {
-            return between(other, own, self.odd_part(at.position, patch));
-        }
-        if is_odd(self.tile_at(at.position)) { own } else { other }
-    }
-
-    /// Returns the mirror reflectivity of every other tile.
-    #[inline(always)]
-    fn other_specular(&self, material: &Material) -> Rgb {
-        if self.mirrors { self.other.specular } else { material.specular }
+    fn patch<N: Number>(&self, patch: &PatchOf<N>) -> [[N; 2]; 2] {
+        let [width, height] = patch.widths(|side| self.along(side));
+        let widths = [width / N::constant(self.dimensions.x), height / N::constant(self.dimensions.y)];
+        [self.place(patch.middle), widths]
     }
 }
 
@@ -91,47 +85,27 @@ impl Shader for Tiles {
         ShaderInputs::PATCH
     }
 
+    /// Returns the colour of the tile at a point, or the mean over the patch around it.
     #[inline(always)]
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colour(material.ambient, self.other.ambient, at)
-    }
-
-    #[inline(always)]
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colour(material.diffuse, self.other.diffuse, at)
-    }
-
-    #[inline(always)]
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colour(material.specular, self.other_specular(material), at)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let ([normal, xdir], n) = (self.given, Interval::<F>::constant);
-        let along = |vector| {
-            let [u, v] = along_sides(constants(normal), constants(xdir), vector);
-            [u / n(self.dimensions.x), v / n(self.dimensions.y)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own = constants(material.reflectivity(of));
+        let other = match of {
+            Reflectivity::Specular if !self.mirrors => own,
+            _ => constants(self.other.reflectivity(of)),
         };
-        let tiles = |at: [Interval<F>; 3]| match self.origin {
-            Some(origin) => along(per_axis(|axis| at[axis] - n(origin[axis]))),
-            None => {
-                let [u, v] = along_sides(constants(normal), constants(xdir), at);
-                [(u + n(OFFSET)) / n(self.dimensions.x), (v + n(OFFSET)) / n(self.dimensions.y)]
-            }
-        };
-        let other = Material { specular: self.other_specular(material), ..(*self.other).clone() };
-        let (own, other) = (LookBounds::from(material), LookBounds::from(&other));
-        Some(match (tiles(at.position).map(Interval::certain_floor), &at.patch) {
-            ([Some(i), Some(j)], _) if !is_odd(DVec2::new(i, j)) => other,
-            ([Some(_), Some(_)], _) => own,
-            (_, Some(patch)) => other.mean(&own, odd_part_bounds(tiles(patch.middle), patch.widths(along))),
-            _ => own.hull(&other),
-        })
+        let patch = at.patch.as_ref().map(|patch| self.patch(patch));
+        Some(tiled(other, own, self.place(at.position), patch))
     }
 
     #[inline(always)]
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
-        self.tile_at(at.position)
+        let [column, row] = self.place(at.position.to_array());
+        DVec2::new(column, row).floor()
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -1,5 +1,6 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
+use tabray::exact::interval::Fine;
 use tabray::prelude::*;
 
 pub static WIDTH: Pparm<f64> = Pparm::or("width", "the width of a tile", 0.5).unit("world units").positive();
@@ -52,9 +53,9 @@ struct Tiles<const ON_FLOOR: bool> {
 }
 
 impl<const ON_FLOOR: bool> Tiles<ON_FLOOR> {
-    #[inline]
-    fn along(&self, at: DVec3) -> DVec2 {
-        if ON_FLOOR { DVec2::new(at.x, at.z) } else { DVec2::from(self.axes.map(|axis| at[axis])) }
+    #[inline(always)]
+    fn axes(&self) -> [usize; 2] {
+        if ON_FLOOR { [0, 2] } else { self.axes }
     }
 }
 
@@ -63,31 +64,25 @@ impl<const ON_FLOOR: bool> Shader for Tiles<ON_FLOOR> {
         ShaderInputs::PATCH
     }
 
-    #[inline]
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        let Rgb { x: red, y: green, z: blue } = material.ambient;
-        let (odd, even) = (Rgb::new(0.0, green, blue), Rgb::new(red, green, 0.0));
-        let along = self.along(at.position);
-        if let Some(patch) = &at.patch {
-            return between(even, odd, self.grid.odd_part(along, self.axes, patch));
+    #[inline(always)]
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own: [N; 3] = constants(material.reflectivity(of));
+        if of != Reflectivity::Ambient {
+            return Some(own);
         }
-        if self.grid.is_odd(along) { odd } else { even }
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let own = LookBounds::from(material);
-        let without = |channel: usize| {
-            let mut look = own;
-            look.ambient[channel] = Interval::constant(0.0);
-            look
-        };
-        let (odd, even) = (without(0), without(2));
-        Some(self.grid.look(at, self.axes, even, odd))
+        let ([red, green, blue], none) = (own, N::constant(0.0));
+        Some(self.grid.colour(at, self.axes(), [red, green, none], [none, green, blue]))
     }
 
     #[inline]
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
-        self.grid.tile(self.along(at.position))
+        let [column, row] = self.axes().map(|axis| at.position[axis]);
+        self.grid.tile(DVec2::new(column, row))
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
@@ -99,56 +94,37 @@ impl<const ON_FLOOR: bool> Shader for Tiles<ON_FLOOR> {
 /// Tiles of one width.
 #[derive(Clone, Copy)]
 pub struct Grid {
-    width: f64,
-    per_unit: f64,
+    per_unit: Known,
 }
 
 impl Grid {
     /// Makes the tiles of an entity whose table has [`WIDTH`].
     pub fn new(args: &Args) -> Self {
-        let width = args.get(&WIDTH);
-        Self { width, per_unit: 1.0 / width }
+        let (width, n) = (args.get(&WIDTH), Fine::constant);
+        Self { per_unit: Known { rounded: 1.0 / width, enclosed: n(1.0) / n(width) } }
     }
 
-    /// Tells whether a point lies on an odd tile. The notes add the offset because a cast to an integer makes the tile
-    /// at 0 twice as wide; with `floor` instead of the cast, tiles are equally wide at any distance.
-    #[inline]
-    pub fn is_odd(&self, along: DVec2) -> bool {
-        is_odd(self.tile(along))
-    }
-
-    /// Returns the part of a patch around a point that is odd, given the two axes along which tiles lie.
-    pub fn odd_part(&self, along: DVec2, axes: [usize; 2], patch: &Patch) -> f64 {
-        let widths = DVec2::from(axes.map(|axis| patch.extent(DVec3::AXES[axis])));
-        odd_part(self.per_unit * along + 1000.0, self.per_unit * widths)
+    /// Returns the colour of a point, or the mean over the patch around it, given the two axes along which tiles lie and the
+    /// colours of even and of odd tiles. The notes add the offset because a cast to an integer makes the tile at 0 twice
+    /// as wide; with `floor` instead of the cast, tiles are equally wide at any distance.
+    #[inline(always)]
+    pub fn colour<N: Number>(&self, at: &Point<N>, [x, y]: [usize; 2], even: [N; 3], odd: [N; 3]) -> [N; 3] {
+        let tiles = |along: N| N::known(&self.per_unit) * along;
+        let counted = |at: [N; 3]| {
+            let offset = N::constant(1000.0);
+            [tiles(at[x]) + offset, tiles(at[y]) + offset]
+        };
+        let patch = at.patch.as_ref().map(|patch| {
+            let [width, height] = patch.widths(|side| [side[x], side[y]]);
+            [counted(patch.middle), [tiles(width), tiles(height)]]
+        });
+        tiled(even, odd, counted(at.position), patch)
     }
 
     /// Returns the tile on which a point lies.
     #[inline]
     pub fn tile(&self, along: DVec2) -> DVec2 {
-        let tile = |coordinate: f64| (self.per_unit * coordinate + 1000.0).floor();
+        let tile = |coordinate: f64| (self.per_unit.rounded * coordinate + 1000.0).floor();
         DVec2::new(tile(along.x), tile(along.y))
-    }
-
-    /// Encloses the look of points, given the looks of even and of odd tiles and the two axes along which tiles lie.
-    pub fn look<F: Precise>(
-        &self,
-        at: &PointBounds<F>,
-        axes: [usize; 2],
-        even: LookBounds<F>,
-        odd: LookBounds<F>,
-    ) -> LookBounds<F> {
-        let n = Interval::<F>::constant;
-        // Of a width that is a power of two, the reciprocal is exact.
-        let is_exact = self.width.to_bits() << 12 == 0 && self.per_unit.is_normal();
-        let tiles = |along| if is_exact { n(self.per_unit) * along } else { along / n(self.width) };
-        let along = |vector: [Interval<F>; 3]| axes.map(|axis| tiles(vector[axis]));
-        let counted = |vector| along(vector).map(|tile| tile + n(1000.0));
-        match (counted(at.position).map(Interval::certain_floor), &at.patch) {
-            ([Some(one), Some(other)], _) if is_odd(DVec2::new(one, other)) => odd,
-            ([Some(_), Some(_)], _) => even,
-            (_, Some(patch)) => even.mean(&odd, odd_part_bounds(counted(patch.middle), patch.widths(along))),
-            _ => odd.hull(&even),
-        }
     }
 }

@@ -25,17 +25,17 @@ pub use tabray_world::hittable::{Bracketed, Certified, Curvature, Facts, Hittabl
 pub use tabray_world::interface::{AnyInterface, Crossing, Interface, Law, Medium};
 pub use tabray_world::light::Light;
 pub use tabray_world::luminous::Luminous;
-pub use tabray_world::material::{Look, Material, Rgb};
-pub use tabray_world::number::{Known, Number};
+pub use tabray_world::material::{Look, Material, Reflectivity, Rgb};
+pub use tabray_world::number::{Known, Number, hull, product};
 pub use tabray_world::panel::Panel;
-pub use tabray_world::patch::{Patch, PatchBounds, between, is_odd, odd_part, odd_part_bounds};
+pub use tabray_world::patch::{Patch, PatchOf, between, is_odd, tiled};
 pub use tabray_world::pinhole::Pinhole;
 pub use tabray_world::rules::Rules;
 pub use tabray_world::sample::Sampler;
 pub use tabray_world::sensor::AnyCamera;
-pub use tabray_world::shader::{Anchor, EnclosedShader, LookBounds, Shader, enclosed};
+pub use tabray_world::shader::{Anchor, Shader};
 pub use tabray_world::surface_formula;
-pub use tabray_world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
+pub use tabray_world::surface_point::{Point, ShaderInputs, SurfacePoint};
 pub use tabray_world::texture::{Alpha, Texture};
 
 // What a scene selects by name: shaders, profiles and other alternatives.

@@ -1,10 +1,9 @@
 //! Colours by the angle of a direction: each channel is a cosine.
 
 use glam::DVec2;
-use tabray_exact::interval::Interval;
-use tabray_exact::scalar::Scalar;
-use tabray_world::certify::Precise;
+use tabray_exact::scalar::{Scalar, per_axis};
 use tabray_world::material::{Look, Material, Rgb};
+use tabray_world::number::Number;
 
 /// The red, green and blue of a direction at the angle t: `1 + cos(frequency t + phase)` for each channel, times the
 /// brightness.
@@ -37,36 +36,38 @@ impl CosinePalette {
     /// Returns the colour in a direction. The angle itself is not computed, which avoids the rounding of `acos` and
     /// arguments outside of its domain.
     #[inline]
-    pub fn colour<const OF_THE_NOTES: bool>(&self, toward: DVec2) -> Rgb {
-        // The point itself has no direction, and cosine and sine count as 0.
-        let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
-        let channels = if OF_THE_NOTES {
-            [0, 1, 2].map(|thirds| channel(thirds, (x * x - y * y, 2.0 * x * y)))
+    pub fn colour<const OF_THE_NOTES: bool, N: Number>(&self, [x, y]: [N; 2]) -> [N; 3] {
+        let n = N::constant;
+        let within = |of: N| of.max(n(-1.0)).min(n(1.0));
+        let plain = x.plain().zip(y.plain()).map(|(x, y)| DVec2::new(x, y));
+        let channels = if let Some(toward) = plain {
+            // The point itself has no direction, and cosine and sine count as 0.
+            let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
+            if OF_THE_NOTES {
+                let twice = (x * x - y * y, 2.0 * x * y);
+                per_axis(|thirds| n(channel(thirds, twice)))
+            } else {
+                per_axis(|at| {
+                    let hue = &self.hues[at];
+                    let multiple = hue.multiple((x, y), |part| part);
+                    n(channel(hue.thirds, turned(multiple, hue.turn.into(), |part| part)))
+                })
+            }
         } else {
-            self.hues.map(|hue| {
-                let multiple = hue.multiple((x, y), |part| part);
-                channel(hue.thirds, turned(multiple, hue.turn.into(), |part| part))
-            })
+            let square = x.powi(2) + y.powi(2);
+            if OF_THE_NOTES || self.are_of_the_notes() {
+                let twice = (within((x.powi(2) - y.powi(2)) / square), within(n(2.0) * x * y / square));
+                per_axis(|thirds| channel(thirds, twice))
+            } else {
+                let (x, y) = (within(x / square.sqrt()), within(y / square.sqrt()));
+                per_axis(|at| {
+                    let hue = &self.hues[at];
+                    let turn = (n(hue.phase).cos(), n(hue.phase).sin());
+                    channel(hue.thirds, turned(hue.multiple((x, y), within), turn, within))
+                })
+            }
         };
-        self.brightness * Rgb::from(channels)
-    }
-
-    /// Encloses [`colour`](Self::colour).
-    pub fn enclose<F: Precise>(&self, [x, y]: [Interval<F>; 2]) -> [Interval<F>; 3] {
-        let n = Interval::<F>::constant;
-        let within = |of: Interval<F>| of.max(n(-1.0)).min(n(1.0));
-        let square = x.powi(2) + y.powi(2);
-        let channels = if self.are_of_the_notes() {
-            let twice = (within((x.powi(2) - y.powi(2)) / square), within(n(2.0) * x * y / square));
-            [0, 1, 2].map(|thirds| channel(thirds, twice))
-        } else {
-            let (x, y) = (within(x / square.sqrt()), within(y / square.sqrt()));
-            self.hues.map(|hue| {
-                let turn = (n(hue.phase).cos(), n(hue.phase).sin());
-                channel(hue.thirds, turned(hue.multiple((x, y), within), turn, within))
-            })
-        };
-        channels.map(|channel| n(self.brightness) * channel)
+        per_axis(|at| n(self.brightness) * channels[at])
     }
 
     /// Bounds the reflectivities of a shader with these ambient colours and the material's other reflectivities.

@@ -8,12 +8,13 @@ use std::ops::ControlFlow;
 use tabray_core::geometry::sight::Sight;
 use tabray_core::render::bytes::level;
 use tabray_core::render::enclosed::{
-    Colour, EnclosedScene, EnclosingTracer, Endpoint, LightPoints, Limits, SceneBounds,
+    Colour, EnclosedScene, EnclosingTracer, LightPoints, Limits, SceneBounds,
 };
 use tabray_core::render::plan::Plan;
 use tabray_core::render::plan::depth::FAINT;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::trace;
+use tabray_core::world::certify::Precise;
 use tabray_core::world::display::Display;
 use tabray_core::world::material::Rgb;
 use tabray_exact::interval::{Float, Fraction, Interval};
@@ -77,7 +78,7 @@ struct Attempt {
 }
 
 /// The enclosure of a pixel's colour in one precision.
-struct Enclosed<F: Endpoint> {
+struct Enclosed<F: Precise> {
     /// The colour; `None` where it is open.
     colour: Option<Colour<Interval<F>>>,
     /// Whether any branch was only bounded by its largest magnitude.
@@ -131,7 +132,7 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 
     /// Tries a proof in one precision.
-    fn verdicts<F: Endpoint>(&self, x: usize, y: usize, bytes: [u8; 3]) -> Attempt {
+    fn verdicts<F: Precise>(&self, x: usize, y: usize, bytes: [u8; 3]) -> Attempt {
         let Enclosed { colour, is_open, is_spent, meets_uncertified } = self.colour::<F>(x, y);
         let Some(colour) = colour else {
             let pixel = Pixel::default();
@@ -151,7 +152,7 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 
     /// Encloses a pixel's colour, the mean of its samples.
-    fn colour<F: Endpoint>(&self, x: usize, y: usize) -> Enclosed<F> {
+    fn colour<F: Precise>(&self, x: usize, y: usize) -> Enclosed<F> {
         let (plan, camera) = (self.plan, &self.plan.camera);
         let scene = EnclosedScene {
             model: plan.model,
@@ -268,7 +269,7 @@ mod tests {
     /// Asserts that the red of the middle pixel is this fraction, in every precision.
     #[track_caller]
     fn is_red(objects: &str, [numerator, denominator]: [f64; 2]) {
-        fn red<F: Endpoint>(prover: &Prover) -> Interval<F> {
+        fn red<F: Precise>(prover: &Prover) -> Interval<F> {
             prover.colour::<F>(1, 1).colour.expect("a known colour")[0]
         }
         fn is_enclosed<F: Float>(red: Interval<F>, [numerator, denominator]: [f64; 2], within: f64) {

@@ -1,31 +1,21 @@
 //! Shaders that bend normals, and leave the colours to another shader.
 
 use crate::body::AnyShader;
-use crate::certify::Precise;
 use crate::luminous::Luminous;
-use crate::material::{Look, Material, Rgb};
-use crate::shader::{EnclosedShader, Shader};
-use crate::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
-use glam::{DVec2, DVec3};
-use tabray_exact::interval::Interval;
+use crate::material::{Look, Material, Reflectivity, Rgb};
+use crate::number::Number;
+use crate::shader::Shader;
+use crate::surface_point::{Point, ShaderInputs, SurfacePoint};
+use glam::DVec2;
 
 /// How normals are bent.
 pub trait Bend: Send + Sync {
     /// The properties of a point that it sees besides the normal.
     const SEES: ShaderInputs;
 
-    /// Returns the outward unit normal with which a point is shaded instead of this one.
-    fn bent(&self, at: &SurfacePoint, normal: DVec3) -> DVec3;
-
-    /// Encloses the unit normals that [`bent`](Self::bent) returns instead of these, before any rounding, at every
-    /// point of a box; `None` where the bent normals are not known. `None` is always correct.
-    fn enclose<F: Precise>(
-        &self,
-        _at: &PointBounds<F>,
-        _normal: [Interval<F>; 3],
-    ) -> Option<[Interval<F>; 3]> {
-        None
-    }
+    /// Returns the outward unit normal with which a point is shaded instead of this one; `None` where it is open, which it
+    /// is not in plain numbers.
+    fn bent<N: Number>(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]>;
 }
 
 /// A shader that bends the normals of another shader.
@@ -45,8 +35,8 @@ impl<B: Bend> Shader for Bent<B> {
         true
     }
 
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        self.bend.bent(at, self.colours.bend(at))
+    fn bend<N: Number>(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]> {
+        self.bend.bent(at, N::looks(&*self.colours).leans(at, normal)?)
     }
 
     fn cuts_out(&self) -> bool {
@@ -61,32 +51,17 @@ impl<B: Bend> Shader for Bent<B> {
         self.colours.covers_in_part()
     }
 
-    fn coverage(&self, at: &SurfacePoint) -> f64 {
-        self.colours.coverage(at)
+    fn coverage<N: Number>(&self, at: &Point<N>) -> N {
+        N::looks(&*self.colours).covers(at)
     }
 
-    fn enclose_bend<F: Precise>(
+    fn reflectivity<N: Number>(
         &self,
-        at: &PointBounds<F>,
-        normal: [Interval<F>; 3],
-    ) -> Option<[Interval<F>; 3]> {
-        self.bend.enclose(at, normal)
-    }
-
-    fn colours(&self) -> Option<&(dyn EnclosedShader + 'static)> {
-        Some(&*self.colours)
-    }
-
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.ambient(material, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.diffuse(material, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.colours.specular(material, at)
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        N::looks(&*self.colours).reflects(of, material, at)
     }
 
     fn emission(&self, at: &SurfacePoint) -> Rgb {

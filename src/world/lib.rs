@@ -76,7 +76,7 @@ pub use patch::Patch;
 pub use rules::Rules;
 pub use sensor::{AnyCamera, Sensor};
 pub use shader::{Anchor, Shader};
-pub use surface_point::{PointBounds, ShaderInputs, SurfacePoint};
+pub use surface_point::{Point, ShaderInputs, SurfacePoint};
 
 #[cfg(test)]
 #[path = "../properties.rs"]

@@ -31,7 +31,30 @@ pub struct Material {
     pub interface: Option<AnyInterface>,
 }
 
+/// One of the three reflectivities of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reflectivity {
+    /// That for ambient light.
+    Ambient,
+    /// That for light from the scene's lights, scattered diffusely.
+    Diffuse,
+    /// That of the mirror.
+    Specular,
+}
+
+impl Reflectivity {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::Ambient, Self::Diffuse, Self::Specular];
+}
+
 impl Material {
+    /// Returns a reflectivity.
+    #[inline(always)]
+    pub fn reflectivity(&self, of: Reflectivity) -> Rgb {
+        let Self { ambient, diffuse, specular, .. } = *self;
+        Look { ambient, diffuse, specular }.reflectivity(of)
+    }
+
     /// Returns bounds of the looks between those of two materials; `None` where their diffuse light may be negative.
     pub fn brightest_with(&self, other: &Self) -> Option<Look> {
         let is_sound = self.diffuse.min(other.diffuse).min_element() >= 0.0;
@@ -78,4 +101,16 @@ pub struct Look {
     pub diffuse: Rgb,
     /// The mirror reflectivity.
     pub specular: Rgb,
+}
+
+impl Look {
+    /// Returns one of them.
+    #[inline(always)]
+    pub fn reflectivity(&self, of: Reflectivity) -> Rgb {
+        match of {
+            Reflectivity::Ambient => self.ambient,
+            Reflectivity::Diffuse => self.diffuse,
+            Reflectivity::Specular => self.specular,
+        }
+    }
 }

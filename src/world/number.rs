@@ -3,6 +3,8 @@
 
 use crate::certify::Precise;
 use crate::material::Rgb;
+use crate::patch::between;
+use crate::shader::{EnclosedShader, Looks};
 use glam::DVec3;
 use std::f64::consts::PI;
 use tabray_exact::affine::Affine;
@@ -35,7 +37,7 @@ impl Known {
 pub(crate) const MAX_TEXELS: usize = 8;
 
 /// A number of a rule of light. A rule that is written once over such numbers gives colours, and bounds of them.
-pub trait Number: Scalar {
+pub trait Number: Scalar + PartialEq + 'static {
     /// Returns a constant.
     fn known(of: &Known) -> Self;
 
@@ -74,11 +76,24 @@ pub trait Number: Scalar {
         sign.map(Self::constant)
     }
 
+    /// Returns a shader of any type, to be asked in this number.
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Self>;
+
+    /// Returns a mean of two colours, or bounds of it; `part` is the weight of the other. Of plain numbers, rounding does not
+    /// move a channel beyond both.
+    #[inline(always)]
+    fn mean(one: [Self; 3], other: [Self; 3], part: Self) -> [Self; 3] {
+        per_axis(|channel| one[channel] + part * (other[channel] - one[channel]))
+    }
+
     /// Returns bounds of two numbers; of plain numbers, the second one.
     fn hull(self, other: Self) -> Self;
 
     /// Returns the least and the greatest whole number at most this number.
     fn floors(self) -> [f64; 2];
+
+    /// Returns the distance to the nearest even number.
+    fn off_even(self) -> Self;
 
     /// Returns what a function of the whole numbers at most these two returns; it is given plain numbers as they are, and
     /// drops their fractions itself. Each channel is from 0 to `most`; where there are many such numbers, that is all that
@@ -90,10 +105,26 @@ pub trait Number: Scalar {
             return [Self::any(0.0, most()); 3];
         }
         let all = |[low, high]: [f64; 2]| (0..=(high - low) as u32).map(move |step| low + f64::from(step));
-        let hull = |one: [Self; 3], other: [Self; 3]| per_axis(|channel| one[channel].hull(other[channel]));
         let found = all(rows).flat_map(|row| all(columns).map(move |column| [column, row]));
         found.map(|at| constants(of(at))).reduce(hull).unwrap_or([Self::any(0.0, most()); 3])
     }
+}
+
+/// Returns bounds of two vectors.
+pub fn hull<N: Number>(one: [N; 3], other: [N; 3]) -> [N; 3] {
+    per_axis(|axis| one[axis].hull(other[axis]))
+}
+
+/// Returns the products of the numbers of two vectors.
+#[inline(always)]
+pub fn product<N: Number>(one: [N; 3], other: [N; 3]) -> [N; 3] {
+    per_axis(|axis| one[axis] * other[axis])
+}
+
+/// Returns bounds of a number in `f64`.
+pub fn coarse<N: Number>(of: N) -> Interval {
+    let [low, high] = of.bounds();
+    Interval { low, high }
 }
 
 /// Returns a vector of plain numbers, if these are plain.
@@ -143,6 +174,15 @@ impl Number for f64 {
         Some(self.signum())
     }
 
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Self> {
+        of
+    }
+
+    #[inline(always)]
+    fn mean(one: [Self; 3], other: [Self; 3], part: Self) -> [Self; 3] {
+        between(one.into(), other.into(), part).to_array()
+    }
+
     #[inline(always)]
     fn hull(self, other: Self) -> Self {
         other
@@ -151,6 +191,13 @@ impl Number for f64 {
     #[inline(always)]
     fn floors(self) -> [f64; 2] {
         [self.floor(); 2]
+    }
+
+    #[inline(always)]
+    fn off_even(self) -> Self {
+        // The remainder by 2. `rem_euclid` calls `fmod`, which took a third of the picture of a tiled plane.
+        let rest = self - 2.0 * (0.5 * self).floor();
+        1.0 - (rest - 1.0).abs()
     }
 
     #[inline(always)]
@@ -178,12 +225,26 @@ impl<F: Precise> Number for Interval<F> {
         is_known.then(|| per_axis(|axis| vector[axis] / length))
     }
 
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Self> {
+        F::looks(of)
+    }
+
     fn hull(self, other: Self) -> Self {
         Interval::hull(self, other)
     }
 
     fn floors(self) -> [f64; 2] {
         [self.low, self.high].map(|end| end.floor().to_f64())
+    }
+
+    fn off_even(self) -> Self {
+        let n = Self::constant;
+        // Any whole number of periods may be left out: the rest is from 0 to 2, or a little beyond.
+        let periods = (0.5 * self.coarse().middle()).floor();
+        let rest = self - n(2.0 * periods);
+        let folded = (n(1.0) - (rest - n(1.0)).abs()).abs();
+        // The two folds hold only from -1 to 3.
+        if rest.low >= F::of(-1.0) && rest.high <= F::of(3.0) { folded } else { Self::any(0.0, 1.0) }
     }
 }
 
@@ -206,11 +267,19 @@ impl Number for Affine {
         is_known.then(|| per_axis(|axis| vector[axis] / length))
     }
 
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Self> {
+        of
+    }
+
     fn hull(self, other: Self) -> Self {
         Affine::hull(self, other)
     }
 
     fn floors(self) -> [f64; 2] {
         self.range().floors()
+    }
+
+    fn off_even(self) -> Self {
+        self.range().off_even().into()
     }
 }

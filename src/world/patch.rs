@@ -6,6 +6,7 @@
 
 use crate::hittable::Hittable;
 use crate::material::Rgb;
+use crate::number::Number;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
@@ -71,18 +72,28 @@ impl Patch {
     }
 }
 
-/// Enclosures of a [`Patch`].
+/// A [`Patch`] as a rule of light sees it, in any number.
 #[derive(Clone, Copy, Debug)]
-pub struct PatchBounds<F> {
+pub struct PatchOf<N> {
     /// The point around which it lies.
-    pub middle: [Interval<F>; 3],
+    pub middle: [N; 3],
     /// Its sides, in world units.
-    pub sides: [[Interval<F>; 3]; 2],
+    pub sides: [[N; 3]; 2],
     /// The least and the greatest u and v; `None` where they are not known, or the shader does not see them.
-    pub uv: Option<[[Interval; 2]; 2]>,
+    pub uv: Option<[[N; 2]; 2]>,
 }
 
-impl<F: Float> PatchBounds<F> {
+impl<N: Number> PatchOf<N> {
+    /// Returns the lengths of the patch along two directions, given a function that returns the parts of a vector
+    /// along them.
+    #[inline]
+    pub fn widths(&self, along: impl Fn([N; 3]) -> [N; 2]) -> [N; 2] {
+        let [one, other] = [along(self.sides[0]), along(self.sides[1])];
+        [one[0].abs() + other[0].abs(), one[1].abs() + other[1].abs()]
+    }
+}
+
+impl<F: Float> PatchOf<Interval<F>> {
     /// Encloses the patch that [`Patch::seen`] returns, before any rounding; `None` where its sides are open, as
     /// where the surface faces the ray.
     pub fn seen(
@@ -128,14 +139,7 @@ impl<F: Float> PatchBounds<F> {
                 ends[1][axis] = ends[1][axis].max(at[axis]);
             }
         }
-        self.uv = Some(ends);
-    }
-
-    /// Returns the lengths of the patch along two directions, given a function that returns the parts of a vector
-    /// along them.
-    pub fn widths(&self, along: impl Fn([Interval<F>; 3]) -> [Interval<F>; 2]) -> [Interval<F>; 2] {
-        let [one, other] = self.sides.map(|side| along(side).map(Scalar::abs));
-        [one[0] + other[0], one[1] + other[1]]
+        self.uv = Some(ends.map(|uv| uv.map(Interval::from_f64)));
     }
 }
 
@@ -148,16 +152,24 @@ pub fn is_odd(square: DVec2) -> bool {
     half - half.floor() != 0.0
 }
 
-/// Returns the fraction of a rectangle with this middle and these widths that odd squares cover. Space is tiled with
-/// squares of side 1, and the square from 0 to 1 is even.
-pub fn odd_part(middle: DVec2, widths: DVec2) -> f64 {
-    0.5 - 0.5 * balance(middle.x, widths.x) * balance(middle.y, widths.y)
+/// Returns the colour of tiles at a place, in units of which each tile is one wide, or the mean over a patch there, given
+/// its middle and its widths. The tile from 0 to 1 is even.
+#[inline(always)]
+pub fn tiled<N: Number>(even: [N; 3], odd: [N; 3], at: [N; 2], patch: Option<[[N; 2]; 2]>) -> [N; 3] {
+    let [columns, rows] = [at[0].floors(), at[1].floors()];
+    let is_known = columns[0] == columns[1] && rows[0] == rows[1];
+    match patch {
+        Some(patch) if at[0].plain().is_some() || !is_known => N::mean(even, odd, odd_part(patch)),
+        None if at[0].plain().is_none() && !is_known => N::any(-1.0, 1.0).either(even, odd),
+        _ if is_odd(DVec2::new(columns[0], rows[0])) => odd,
+        _ => even,
+    }
 }
 
-/// Encloses what [`odd_part`] returns, before any rounding.
-pub fn odd_part_bounds<F: Float>(middle: [Interval<F>; 2], widths: [Interval<F>; 2]) -> Interval<F> {
-    let half = Interval::constant(0.5);
-    let balance = |axis: usize| balance_bounds(middle[axis], widths[axis]);
+/// Returns the fraction of a rectangle with this middle and these widths that odd tiles cover.
+#[inline(never)]
+pub fn odd_part<N: Number>([middle, widths]: [[N; 2]; 2]) -> N {
+    let (half, balance) = (N::constant(0.5), |axis: usize| balance(middle[axis], widths[axis]));
     half - half * balance(0) * balance(1)
 }
 
@@ -167,46 +179,16 @@ pub fn between(one: Rgb, other: Rgb, part: f64) -> Rgb {
 }
 
 /// Returns the mean of a wave over an interval: 1 from 0 to 1, -1 from 1 to 2, and so on.
-fn balance(middle: f64, width: f64) -> f64 {
-    let (from, to) = (middle - 0.5 * width, middle + 0.5 * width);
-    // The remainder by 2. `rem_euclid` calls `fmod`, which took a third of the picture of a tiled plane.
-    let rest = |at: f64| at - 2.0 * (0.5 * at).floor();
-    let sign = |at: f64| if rest(at) < 1.0 { 1.0 } else { -1.0 };
-    if from.floor() == to.floor() {
-        return sign(middle);
+fn balance<N: Number>(middle: N, width: N) -> N {
+    let (n, half) = (N::constant, N::constant(0.5) * width);
+    let (from, to) = (middle - half, middle + half);
+    let (first, last) = (from.floors()[0], to.floors()[1]);
+    if first == last {
+        return n(if (0.5 * first).floor() == 0.5 * first { 1.0 } else { -1.0 });
     }
     // The integral from 0 rises to 1 and falls back to 0.
-    let integral = |at: f64| 1.0 - (rest(at) - 1.0).abs();
-    ((integral(to) - integral(from)) / width).clamp(-1.0, 1.0)
-}
-
-/// Encloses the mean that [`balance`] returns.
-fn balance_bounds<F: Float>(middle: Interval<F>, width: Interval<F>) -> Interval<F> {
-    let n = Interval::<F>::constant;
-    let half = n(0.5) * width;
-    let (from, to) = (middle - half, middle + half);
-    let any = n(-1.0).hull(n(1.0));
-    if let (Some(first), Some(last)) = (from.certain_floor(), to.certain_floor())
-        && first == last
-    {
-        return if (0.5 * first).floor() == 0.5 * first { n(1.0) } else { n(-1.0) };
-    }
-    if width.low <= F::of(0.0) || !from.is_bounded() || !to.is_bounded() {
-        return any;
-    }
-    let mean = (triangle(to) - triangle(from)) / width;
+    let mean = (to.off_even() - from.off_even()) / width;
     mean.max(n(-1.0)).min(n(1.0))
-}
-
-/// Encloses the distance to the nearest even number, which is the integral of the wave of [`balance`].
-fn triangle<F: Float>(at: Interval<F>) -> Interval<F> {
-    let n = Interval::<F>::constant;
-    // Any whole number of periods may be left out: the rest is from 0 to 2, or a little beyond.
-    let periods = (0.5 * at.coarse().middle()).floor();
-    let rest = at - n(2.0 * periods);
-    let folded = (n(1.0) - (rest - n(1.0)).abs()).abs();
-    // The two folds hold only from -1 to 3.
-    if rest.low >= F::of(-1.0) && rest.high <= F::of(3.0) { folded } else { n(0.0).hull(n(1.0)) }
 }
 
 #[cfg(test)]
@@ -238,14 +220,14 @@ mod tests {
             x in -9.0..9.0_f64, y in -9.0..9.0_f64, width in 1e-3..5.0_f64, height in 1e-3..5.0_f64, off in 0.0..0.01_f64,
         ) {
             let around = |at: f64, off: f64| Interval { low: at - off, high: at + off };
-            let found = odd_part(DVec2::new(x, y), DVec2::new(width, height));
-            let exactly = odd_part_bounds([x, y].map(Interval::point), [width, height].map(Interval::point));
-            let nearly = odd_part_bounds([x, y].map(|at| around(at, off)), [width, height].map(Interval::point));
+            let found = odd_part([[x, y], [width, height]]);
+            let exactly = odd_part([[x, y].map(Interval::point), [width, height].map(Interval::point)]);
+            let nearly = odd_part([[x, y].map(|at| around(at, off)), [width, height].map(Interval::point)]);
             prop_assert!(exactly.low - 1e-12 <= found && found <= exactly.high + 1e-12, "{found} {exactly:?}");
             prop_assert!(exactly.high - exactly.low < 1e-9, "{exactly:?}");
             prop_assert!(nearly.low <= exactly.high && exactly.low <= nearly.high, "{nearly:?} {exactly:?}");
             for part in [-1.0, -0.3, 0.8] {
-                let moved = odd_part(DVec2::new(x + part * off, y - part * off), DVec2::new(width, height));
+                let moved = odd_part([[x + part * off, y - part * off], [width, height]]);
                 prop_assert!(nearly.low - 1e-12 <= moved && moved <= nearly.high + 1e-12, "{moved} {nearly:?}");
             }
         }
@@ -263,7 +245,7 @@ mod tests {
             let (right, above) = (odds(&across) as f64, odds(&up) as f64);
             let n = f64::from(count);
             let expected = (right * (n - above) + above * (n - right)) / (n * n);
-            let found = odd_part(DVec2::new(x, y), DVec2::new(width, height));
+            let found = odd_part([[x, y], [width, height]]);
             prop_assert!((found - expected).abs() < 0.02, "{found} {expected}");
         }
     }

@@ -1,11 +1,11 @@
 //! Textures that repeat.
 
 use crate::material::Rgb;
-use crate::number::MAX_TEXELS;
+use crate::number::{MAX_TEXELS, Number, coarse, hull};
 use crate::patch::MEAN_ROUNDING;
 use crate::texture::Texture;
 use glam::{DVec2, DVec3};
-use tabray_exact::interval::{Float, Interval};
+use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, per_axis};
 
 impl Texture {
@@ -23,18 +23,18 @@ impl Texture {
     /// Encloses the blends of the four texels around the places in a box, which are given as in
     /// [`blended`](Self::blended). `texel` returns the texel of any column and row. `None` if the box covers many
     /// texels.
-    pub fn enclose_blended<F: Float>(
+    pub fn enclose_blended<N: Number>(
         &self,
-        place: [Interval; 2],
+        place: [N; 2],
         texel: impl Fn(DVec2) -> DVec3,
-    ) -> Option<[Interval<F>; 3]> {
-        let place = place.map(|along| along - Interval::constant(0.5));
-        let [columns, rows] = place.map(|along| [along.low.floor(), along.high.floor()]);
-        let texel = |x: f64, y: f64| constants::<Interval<F>>(texel(DVec2::new(x, y)));
+    ) -> Option<[N; 3]> {
+        let place = place.map(|along| along - N::constant(0.5));
+        let [columns, rows] = place.map(N::floors);
+        let texel = |x: f64, y: f64| constants::<N>(texel(DVec2::new(x, y)));
         if columns[0] == columns[1] && rows[0] == rows[1] {
             let (x, y) = (columns[0], rows[0]);
-            let part = |along: Interval, from: f64| Interval::<F>::from_f64(along - Interval::constant(from));
-            let blend = |one: [Interval<F>; 3], other: [Interval<F>; 3], part: Interval<F>| {
+            let part = |along: N, from: f64| along - N::constant(from);
+            let blend = |one: [N; 3], other: [N; 3], part: N| {
                 per_axis(|channel| one[channel] + part * (other[channel] - one[channel]))
             };
             let row = |y: f64| blend(texel(x, y), texel(x + 1.0, y), part(place[0], x));
@@ -43,9 +43,6 @@ impl Texture {
         // Blends lie between the texels around.
         let are_few = |[low, high]: [f64; 2]| high - low < MAX_TEXELS as f64;
         let all = |[low, high]: [f64; 2]| (0..=(high - low) as u32 + 1).map(move |at| low + f64::from(at));
-        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            per_axis(|channel| one[channel].hull(other[channel]))
-        };
         let around = (are_few(columns) && are_few(rows)).then(|| all(rows))?;
         around.flat_map(|y| all(columns).map(move |x| [x, y])).map(|[x, y]| texel(x, y)).reduce(hull)
     }
@@ -53,10 +50,8 @@ impl Texture {
     /// Encloses the means of [`mean_repeated`](Self::mean_repeated) over rectangles whose corners are enclosed;
     /// `None` where a rectangle may be empty. Where the corners are nearly known, the mean is known up to the light
     /// of the texels near the edges.
-    pub fn enclose_mean_repeated<F: Float>(
-        &self,
-        [low, high]: [[Interval; 2]; 2],
-    ) -> Option<[Interval<F>; 3]> {
+    pub fn enclose_mean_repeated<N: Number>(&self, corners: [[N; 2]; 2]) -> Option<[N; 3]> {
+        let [low, high] = corners.map(|corner| corner.map(coarse));
         let mut around = Interval::constant(MEAN_ROUNDING);
         for axis in 0..2 {
             let width = high[axis] - low[axis];
@@ -70,7 +65,9 @@ impl Texture {
         let middle = |corner: [Interval; 2]| DVec2::from(corner.map(Interval::middle));
         let mean = self.mean_repeated(middle(low), middle(high));
         Some(per_axis(|channel| {
-            Interval::from_f64(Interval::point(mean[channel]) + Interval { low: -error, high: error })
+            let Interval { low, high } =
+                Interval::point(mean[channel]) + Interval { low: -error, high: error };
+            N::any(low, high)
         }))
     }
 

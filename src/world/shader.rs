@@ -1,17 +1,16 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
-use crate::certify::Precise;
 use crate::luminous::Luminous;
-use crate::material::{Look, Material, Rgb};
-use crate::patch::PatchBounds;
+use crate::material::{Look, Material, Reflectivity, Rgb};
+use crate::number::Number;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{View, ViewMut};
-use crate::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
-use f256::f256;
+use crate::surface_point::{Point, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
-use tabray_exact::interval::{Fine, Float, Fraction, Interval};
-use tabray_exact::scalar::{Scalar, per_axis};
+use tabray_exact::affine::Affine;
+use tabray_exact::interval::{Fine, Interval, Wide};
+use tabray_exact::scalar::constants;
 
 /// The origin and the unit of length of the pattern of a shader on one object.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,22 +32,14 @@ pub trait Shader: Send + Sync {
         ShaderInputs::POSITION
     }
 
-    /// Returns the reflectivity for ambient light at a point.
+    /// Returns a reflectivity at a point, or bounds of it at all points of a box; `None` where it is open, which it is not in
+    /// plain numbers. Pictures ask in plain numbers, and proofs of colours in numbers that enclose others.
     #[inline]
-    fn ambient(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
-        material.ambient
-    }
-
-    /// Returns the diffuse reflectivity for light from the scene's lights at a point.
-    #[inline]
-    fn diffuse(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
-        material.diffuse
-    }
-
-    /// Returns the mirror reflectivity at a point.
-    #[inline]
-    fn specular(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
-        material.specular
+    fn reflectivity<N: Number>(&self, of: Reflectivity, material: &Material, _at: &Point<N>) -> Option<[N; 3]>
+    where
+        Self: Sized,
+    {
+        Some(constants(material.reflectivity(of)))
     }
 
     /// Returns the part of the ambient light at a point that the surface gives by itself, besides the material's
@@ -78,12 +69,16 @@ pub trait Shader: Send + Sync {
         false
     }
 
-    /// Returns the outward unit normal with which a point is shaded, if the shader [bends](Self::bends) normals; such
-    /// a shader [sees](Self::sees) them. Lights and mirrors use the bent normal. The surface itself stays as it is:
-    /// light from behind does not reach it, and rays leave it on the side that they hit.
+    /// Returns the outward unit normal with which a point is shaded instead of this one, if the shader
+    /// [bends](Self::bends) normals; `None` where it is open, which it is not in plain numbers. Lights and mirrors use
+    /// the bent normal. The surface itself stays as it is: light from behind does not reach it, and rays leave it on the
+    /// side that they hit.
     #[inline]
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        at.normal
+    fn bend<N: Number>(&self, _at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]>
+    where
+        Self: Sized,
+    {
+        Some(normal)
     }
 
     /// Tells whether the shader cuts parts out of the surface. It is the same in every call.
@@ -108,52 +103,17 @@ pub trait Shader: Send + Sync {
     /// Returns the fraction of what is behind a point that it covers, from 0 to 1, if the shader [covers in
     /// part](Self::covers_in_part). The rest is seen through it unbent, and shadows are as light.
     #[inline]
-    fn coverage(&self, _at: &SurfacePoint) -> f64 {
-        1.0
-    }
-
-    /// Encloses the [`coverage`](Self::coverage) of every point of a box, before any rounding. The default is always
-    /// correct.
-    fn enclose_coverage<F: Precise>(&self, _at: &PointBounds<F>) -> Interval<F>
+    fn coverage<N: Number>(&self, _at: &Point<N>) -> N
     where
         Self: Sized,
     {
-        let least = if self.covers_in_part() { 0.0 } else { 1.0 };
-        Interval::constant(least).hull(Interval::constant(1.0))
-    }
-
-    /// Encloses the unit normals that the shader makes of these outward ones, which the shader of
-    /// [`colours`](Self::colours) has already bent, before any rounding, at every point of a box; `None` where the
-    /// bent normals are not known. `None` is always correct.
-    fn enclose_bend<F: Precise>(
-        &self,
-        _at: &PointBounds<F>,
-        _normal: [Interval<F>; 3],
-    ) -> Option<[Interval<F>; 3]>
-    where
-        Self: Sized,
-    {
-        None
-    }
-
-    /// Returns the shader that gives the colours, and the normals to bend, if this shader only bends normals.
-    fn colours(&self) -> Option<&(dyn EnclosedShader + 'static)> {
-        None
+        N::constant(1.0)
     }
 
     /// Returns the three reflectivities, if each is the same at every point. Then only [`bend`](Self::bend) is called
     /// for each point, not the methods above. `None` is always correct.
     fn uniform(&self, _material: &Material) -> Option<Look> {
         None
-    }
-
-    /// Encloses the three reflectivities, before any rounding, at every point of a box; `None` where they are not
-    /// known. Proofs of colours ask for them. `None` is always correct.
-    fn enclose<F: Precise>(&self, material: &Material, _at: &PointBounds<F>) -> Option<LookBounds<F>>
-    where
-        Self: Sized,
-    {
-        self.uniform(material).map(LookBounds::from)
     }
 
     /// Returns the tile or the texel at a point, as two integers that differ from those of its neighbours. Adaptive
@@ -177,123 +137,37 @@ pub trait Shader: Send + Sync {
     }
 }
 
-/// Enclosures of a surface's reflectivities, per channel.
-#[derive(Clone, Copy, Debug)]
-pub struct LookBounds<F> {
-    /// The reflectivity for ambient light.
-    pub ambient: [Interval<F>; 3],
-    /// The reflectivity for light from the scene's lights, scattered diffusely.
-    pub diffuse: [Interval<F>; 3],
-    /// The mirror reflectivity.
-    pub specular: [Interval<F>; 3],
+/// A shader of any type, asked in any number. Every [`Shader`] is one.
+pub trait EnclosedShader:
+    Shader + Looks<f64> + Looks<Interval> + Looks<Affine> + Looks<Wide> + Looks<Fine>
+{
 }
-
-/// Takes the reflectivities as exact.
-impl<F: Float> From<Look> for LookBounds<F> {
-    fn from(Look { ambient, diffuse, specular }: Look) -> Self {
-        let exactly = |colour: Rgb| per_axis(|channel| Interval::constant(colour[channel]));
-        Self { ambient: exactly(ambient), diffuse: exactly(diffuse), specular: exactly(specular) }
-    }
-}
-
-impl<F: Float> From<&Material> for LookBounds<F> {
-    fn from(material: &Material) -> Self {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        Look { ambient, diffuse, specular }.into()
-    }
-}
-
-impl<F: Float> LookBounds<F> {
-    /// Returns the bounds of weighted means of both. `part` is the weight of the other.
-    pub fn mean(&self, other: &Self, part: Interval<F>) -> Self {
-        let either = self.hull(other);
-        let mean = |one: [Interval<F>; 3], other: [Interval<F>; 3], either: [Interval<F>; 3]| {
-            per_axis(|channel| {
-                let Interval { low, high } = one[channel] + part * (other[channel] - one[channel]);
-                Interval { low: low.max(either[channel].low), high: high.min(either[channel].high) }
-            })
-        };
-        Self {
-            ambient: mean(self.ambient, other.ambient, either.ambient),
-            diffuse: mean(self.diffuse, other.diffuse, either.diffuse),
-            specular: mean(self.specular, other.specular, either.specular),
-        }
-    }
-
-    /// Returns the smallest bounds that contain both.
-    pub fn hull(&self, other: &Self) -> Self {
-        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            per_axis(|channel| one[channel].hull(other[channel]))
-        };
-        Self {
-            ambient: hull(self.ambient, other.ambient),
-            diffuse: hull(self.diffuse, other.diffuse),
-            specular: hull(self.specular, other.specular),
-        }
-    }
-}
-
-/// A shader that is enclosed in each precision. Every [`Shader`] is one.
-pub trait EnclosedShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseLook<Fraction> {}
 
 impl<T: Shader> EnclosedShader for T {}
 
-/// A shader whose looks are enclosed in one precision. Every [`Shader`] is one.
-pub trait EncloseLook<F> {
-    /// Calls [`Shader::enclose`].
-    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>>;
+/// A shader of any type, asked in one number. Every [`Shader`] is one.
+pub trait Looks<N> {
+    /// Calls [`Shader::reflectivity`].
+    fn reflects(&self, of: Reflectivity, material: &Material, at: &Point<N>) -> Option<[N; 3]>;
 
-    /// Calls [`Shader::enclose_coverage`].
-    fn coverage_bounds(&self, at: &PointBounds<F>) -> Interval<F>;
+    /// Calls [`Shader::coverage`].
+    fn covers(&self, at: &Point<N>) -> N;
 
-    /// Calls [`Shader::enclose_bend`].
-    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
+    /// Calls [`Shader::bend`].
+    fn leans(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]>;
 }
 
-impl<T: Shader, F: Precise> EncloseLook<F> for T {
-    fn look(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        self.enclose(material, at)
+impl<T: Shader, N: Number> Looks<N> for T {
+    fn reflects(&self, of: Reflectivity, material: &Material, at: &Point<N>) -> Option<[N; 3]> {
+        self.reflectivity(of, material, at)
     }
 
-    fn coverage_bounds(&self, at: &PointBounds<F>) -> Interval<F> {
-        self.enclose_coverage(at)
+    fn covers(&self, at: &Point<N>) -> N {
+        self.coverage(at)
     }
 
-    fn bent(&self, at: &PointBounds<F>, normal: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
-        self.enclose_bend(at, normal)
-    }
-}
-
-/// Encloses the look of a shader of any type, as [`Shader::enclose`] does.
-pub fn enclosed<F: Precise>(
-    shader: &dyn EnclosedShader,
-    material: &Material,
-    at: &PointBounds<F>,
-) -> Option<LookBounds<F>> {
-    let look = EncloseLook::<Fraction>::look(shader, material, &widened(at))?;
-    let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
-    let LookBounds { ambient, diffuse, specular } = look;
-    Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
-}
-
-/// Encloses the coverage of a shader of any type, as [`Shader::enclose_coverage`] does.
-pub fn enclosed_coverage<F: Precise>(shader: &dyn EnclosedShader, at: &PointBounds<F>) -> Interval<F> {
-    F::narrow(EncloseLook::<Fraction>::coverage_bounds(shader, &widened(at)))
-}
-
-/// Returns the bounds of a point as fractions.
-fn widened<F: Precise>(at: &PointBounds<F>) -> PointBounds<Fraction> {
-    PointBounds {
-        position: at.position.map(F::widen),
-        normal: at.normal.map(|normal| normal.map(F::widen)),
-        uv: at.uv,
-        face: at.face,
-        patch: at.patch.map(|PatchBounds { middle, sides, uv }| PatchBounds {
-            middle: middle.map(F::widen),
-            sides: sides.map(|side| side.map(F::widen)),
-            uv,
-        }),
-        tangents: at.tangents.map(|tangents| tangents.map(|along| along.map(F::widen))),
+    fn leans(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]> {
+        self.bend(at, normal)
     }
 }
 
@@ -311,7 +185,7 @@ pub type EachPart<'e> = &'e mut dyn FnMut(&dyn PacketShader, SurfacePoints, Rang
 
 /// A shader for packets. Every [`Shader`] is one.
 pub trait PacketShader: EnclosedShader {
-    /// Evaluates [`ambient`](Shader::ambient) and [`specular`](Shader::specular) at many points. Returns whether any
+    /// Evaluates the ambient and the specular [reflectivities](Shader::reflectivity) of many points. Returns whether any
     /// specular reflectivity is not 0.
     fn ambient_and_specular(
         &self,
@@ -322,11 +196,26 @@ pub trait PacketShader: EnclosedShader {
         speculars: ViewMut,
     ) -> bool;
 
-    /// Evaluates [`diffuse`](Shader::diffuse) at many points. Returns whether any reflectivity is not 0.
+    /// Evaluates the diffuse [reflectivities](Shader::reflectivity) of many points. Returns whether any reflectivity is not 0.
     fn diffuses(&self, cpu: Cpu, material: &Material, points: SurfacePoints, out: ViewMut) -> bool;
 
     /// Writes the [`tile`](Shader::tile) at each point, as one number.
     fn tiles(&self, cpu: Cpu, points: SurfacePoints, out: &mut [u64]);
+
+    /// Returns a reflectivity at one point.
+    fn colour_at(&self, of: Reflectivity, material: &Material, at: &SurfacePoint) -> Rgb {
+        self.reflects(of, material, &Point::<f64>::of(at)).map_or(Rgb::ZERO, Rgb::from)
+    }
+
+    /// Returns the [`coverage`](Shader::coverage) of one point.
+    fn coverage_at(&self, at: &SurfacePoint) -> f64 {
+        self.covers(&Point::<f64>::of(at))
+    }
+
+    /// Returns the normal at one point, [bent](Shader::bend).
+    fn normal_at(&self, at: &SurfacePoint) -> DVec3 {
+        self.leans(&Point::<f64>::of(at), at.normal.to_array()).map_or(at.normal, DVec3::from)
+    }
 }
 
 /// The shader of an object that has none of its own: the material everywhere.

@@ -1,11 +1,10 @@
 //! The properties of points that formulas of a surface read.
 
-use crate::certify::Precise;
-use crate::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
+use crate::number::Number;
+use crate::surface_point::{Point, ShaderInputs, SurfacePoint};
 use std::ops::Range;
 use tabray_exact::formula::field::SurfaceField;
 use tabray_exact::interval::Interval;
-use tabray_exact::scalar::Scalar;
 
 /// The number of variables, in the order of [`SURFACE`](tabray_exact::formula::variables::SURFACE).
 const COUNT: usize = SurfaceField::VARIABLES.len();
@@ -32,16 +31,19 @@ impl SurfacePoint {
     }
 }
 
-impl<F: Precise> PointBounds<F> {
-    /// Encloses a formula at the points; `None` where a variable that it reads is not known.
-    pub fn value(&self, formula: &SurfaceField) -> Option<Interval<F>> {
+impl<N: Number> Point<'_, N> {
+    /// Returns a formula at the point, or bounds of it; `None` where a variable that it reads is not known.
+    pub fn value(&self, formula: &SurfaceField) -> Option<N> {
+        if let Some(at) = self.plain {
+            return Some(N::constant(formula.at(at.variables())));
+        }
         let sees = ShaderInputs::of(formula);
         if sees.curvature || !formula.is_enclosed() {
             return None;
         }
-        let zero = Interval::constant(0.0);
+        let zero = N::constant(0.0);
         let [nx, ny, nz] = if sees.normal { self.normal? } else { [zero; 3] };
-        let [u, v] = if sees.uv { self.uv?.map(Interval::from_f64) } else { [zero; 2] };
+        let [u, v] = if sees.uv { self.uv? } else { [zero; 2] };
         let [x, y, z] = self.position;
         Some(formula.at([x, y, z, u, v, nx, ny, nz, zero, zero, zero]))
     }

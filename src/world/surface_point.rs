@@ -4,9 +4,11 @@ use crate::certify::{Precise, ProofMethods};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Side;
 use crate::hittable::{Curvature, Hittable};
-use crate::patch::{Patch, PatchBounds};
+use crate::number::Number;
+use crate::patch::{Patch, PatchOf};
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::Interval;
+use tabray_exact::scalar::constants;
 
 /// A point of a surface, as a shader sees it. On a copy of an object, the point is in the coordinates of the original.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,26 +145,48 @@ impl ShaderInputs {
     }
 }
 
-/// Points of a surface, in a box.
+/// A point of a surface as a rule of light sees it, in any number: one point, or all points of a box.
 #[derive(Clone, Copy, Debug)]
-pub struct PointBounds<F> {
-    /// The positions, in world coordinates, or on a copy in those of the original.
-    pub position: [Interval<F>; 3],
-    /// The unit normals, outward; `None` where they are not known.
-    pub normal: Option<[Interval<F>; 3]>,
+pub struct Point<'p, N> {
+    /// The position, in world coordinates, or on a copy in those of the original.
+    pub position: [N; 3],
+    /// The unit normal for shading, outward; `None` where it is not known.
+    pub normal: Option<[N; 3]>,
     /// The coordinates u and v; `None` where the shape has none, they are not known, or the shader does not see them.
-    pub uv: Option<[Interval; 2]>,
+    pub uv: Option<[N; 2]>,
     /// The index of the face; `None` where the shape has none, it is not known, or the shader does not see it.
     pub face: Option<u32>,
-    /// The patch over which the mean is shown, for all of these points; `None` where a point is shown, or the patch is
-    /// not known.
-    pub patch: Option<PatchBounds<F>>,
+    /// The patch over which the mean is shown; `None` where a point is shown, or the patch is not known.
+    pub patch: Option<PatchOf<N>>,
     /// The unit directions along the surface in which u and v grow; `None` where they are not known, or the shader
     /// does not see them.
-    pub tangents: Option<[[Interval<F>; 3]; 2]>,
+    pub tangents: Option<[[N; 3]; 2]>,
+    /// The point itself, in plain numbers: for a rule that pictures compute in another way than proofs.
+    pub plain: Option<&'p SurfacePoint>,
 }
 
-impl<F: Precise> PointBounds<F> {
+impl<'p, N: Number> Point<'p, N> {
+    /// Returns a point in any number.
+    #[inline(always)]
+    pub fn of(at: &'p SurfacePoint) -> Self {
+        let pair = |of: DVec2| [N::constant(of.x), N::constant(of.y)];
+        Self {
+            position: constants(at.position),
+            normal: Some(constants(at.normal)),
+            uv: at.uv.map(pair),
+            face: at.face,
+            patch: at.patch.map(|patch| PatchOf {
+                middle: constants(at.position),
+                sides: [constants(patch.sides[0]), constants(patch.sides[1])],
+                uv: patch.uv.map(|[low, high]| [pair(low), pair(high)]),
+            }),
+            tangents: at.tangents.map(|[u, v]| [constants(u), constants(v)]),
+            plain: Some(at),
+        }
+    }
+}
+
+impl<F: Precise> Point<'_, Interval<F>> {
     /// Returns bounds of points of a part of a shape, with what a shader sees of them.
     pub fn seen(
         shape: &dyn ProofMethods,
@@ -174,6 +198,7 @@ impl<F: Precise> PointBounds<F> {
         let shape = F::proofs(shape);
         let uv = if sees.uv { shape.uv_bounds(position, part) } else { None };
         let face = if sees.face { shape.face(position, part) } else { None };
-        Self { position, normal, uv, face, patch: None, tangents: None }
+        let uv = uv.map(|uv| uv.map(Interval::from_f64));
+        Self { position, normal, uv, face, patch: None, tangents: None, plain: None }
     }
 }

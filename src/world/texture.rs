@@ -3,7 +3,7 @@
 use crate::display::Display;
 use crate::image_file;
 use crate::material::Rgb;
-use crate::number::MAX_TEXELS;
+use crate::number::{MAX_TEXELS, Number, hull};
 use crate::rules::Rules;
 use crate::sensor::Sensor;
 use crate::sums::Sums;
@@ -13,8 +13,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use tabray_exact::interval::{Float, Interval};
-use tabray_exact::scalar::{Scalar, constants, per_axis};
+use tabray_exact::scalar::constants;
 
 /// The default opacity below which a place of an image is cut out.
 pub const CUTOFF: f64 = 0.5;
@@ -218,20 +217,17 @@ impl Texture {
 
     /// Encloses the texels of at least one column and row. If they are many, the channels may be anything that
     /// a texel may be.
-    pub fn enclose<F: Float>(
+    pub fn enclose<N: Number>(
         &self,
         columns: impl Iterator<Item = u32> + Clone,
         rows: impl Iterator<Item = u32> + Clone,
-    ) -> [Interval<F>; 3] {
-        let any = Interval::constant(0.0).hull(Interval::constant(self.brightest()));
+    ) -> [N; 3] {
+        let any = || [N::any(0.0, self.brightest()); 3];
         if columns.clone().nth(MAX_TEXELS).is_some() || rows.clone().nth(MAX_TEXELS).is_some() {
-            return [any; 3];
+            return any();
         }
         let of_row = |row: u32| columns.clone().map(move |column| constants(self.texel(column, row)));
-        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            per_axis(|channel| one[channel].hull(other[channel]))
-        };
-        rows.flat_map(of_row).reduce(hull).unwrap_or([any; 3])
+        rows.flat_map(of_row).reduce(hull).unwrap_or_else(any)
     }
 }
 

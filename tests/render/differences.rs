@@ -15,6 +15,7 @@ use tabray::scene::{self, Loaded, Model, Report, dump};
 use tabray::tools::debug::{self, LogLine};
 use tabray::world::Accuracy::{self, Classic, Exact};
 use tabray::world::SurfacePoint;
+use tabray::world::material::Reflectivity;
 
 /// The scene of a difference.
 #[derive(Clone)]
@@ -231,7 +232,7 @@ const CHECKS: &[Check] = &[
         let model = scene.model(Exact);
         let ambient = |object: usize, at: DVec3| {
             let object = &model.objects[object];
-            object.shader.ambient(&object.material, &SurfacePoint::at(at))
+            object.shader.colour_at(Reflectivity::Ambient, &object.material, &SurfacePoint::at(at))
         };
         // Both points are in tile 0 if numbers are truncated toward 0.
         for (object, left, right) in [(0, -500.25, -499.75), (1, -100_001.0, -99_999.0)] {

@@ -6,16 +6,17 @@ use glam::DVec3;
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::exact::scalar::{Scalar, unit};
+use tabray::exact::scalar::{Scalar, constants, unit};
 use tabray::geometry::{Aabb, Bracket, Frame, ImagePoint, MISS, Ray, RayBall, RayRange, Side};
 use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
 use tabray::shapes::{Implicit, Made};
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::certify::Equation;
+use tabray::world::material::Reflectivity;
 use tabray::world::number::Number;
 use tabray::world::{
     AnyInterface, Background, Body, Bracketed, Camera, Certified, Crossing, Facts, Hittable, Interface,
-    Light, Material, Origins, Projected, Rgb, Shader, Shape, Sides, SurfacePoint,
+    Light, Material, Origins, Point, Projected, Rgb, Shader, Shape, Sides,
 };
 
 #[test]
@@ -254,12 +255,18 @@ impl Implicit for Shaved {
 struct Colour(Flaw);
 
 impl Shader for Colour {
-    fn diffuse(&self, material: &Material, _at: &SurfacePoint) -> Rgb {
-        match self.0 {
-            Flaw::NanColour => Rgb::NAN,
-            Flaw::NegativeColour => -material.diffuse,
-            _ => material.diffuse,
-        }
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        _at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own = material.reflectivity(of);
+        Some(constants(match (of, self.0) {
+            (Reflectivity::Diffuse, Flaw::NanColour) => Rgb::NAN,
+            (Reflectivity::Diffuse, Flaw::NegativeColour) => -own,
+            _ => own,
+        }))
     }
 }
 

@@ -5,7 +5,7 @@ use image::{Rgb, RgbImage};
 use std::fs;
 use std::path::Path;
 use tabray::geometry::Side;
-use tabray::prelude::DVec3;
+use tabray::prelude::{DVec3, Reflectivity};
 use tabray::render::Plan;
 use tabray::scene::{self, Model};
 use tabray::tools::colours::{Prover, Verdict};
@@ -60,8 +60,7 @@ fn look(model: &Model, at: [f64; 3]) -> [[f64; 3]; 3] {
     let at = DVec3::from(at);
     let object = model.objects.iter().find(|object| object.shape.is_on_surface(at, 1e-9)).expect("a face");
     let at = object.surface_point(at, Side::Outside);
-    let of = [object.shader.ambient(&object.material, &at), object.shader.diffuse(&object.material, &at)];
-    [of[0], of[1], object.shader.specular(&object.material, &at)].map(|colour| colour.to_array())
+    Reflectivity::ALL.map(|of| object.shader.colour_at(of, &object.material, &at).to_array())
 }
 
 #[track_caller]

@@ -485,9 +485,19 @@ inventory::submit! {
 struct Stripes(Anchor);
 
 impl Shader for Stripes {
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        let stripe = (10.0 * (at.position - self.0.origin).y / self.0.unit).floor();
-        if stripe.rem_euclid(2.0) == 0.0 { material.ambient } else { Rgb::ZERO }
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let own = constants(material.reflectivity(of));
+        if of != Reflectivity::Ambient {
+            return Some(own);
+        }
+        let n = N::constant;
+        let along = n(10.0) * (at.position[1] - n(self.0.origin.y)) / n(self.0.unit);
+        Some(tiled(own, [n(0.0); 3], [along, n(0.0)], None))
     }
 }
 ";

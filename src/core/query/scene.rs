@@ -257,7 +257,7 @@ impl Query<'_> {
             shape.surface_hit(&ray.sight().ray(), answer.distance, point, answer.part);
         let coverage = object.shader.covers_in_part().then(|| {
             let side = Side::seen_along(ray.sight().ray().dir, normal);
-            object.shader.coverage(&object.surface_point(point, side))
+            object.shader.coverage_at(&object.surface_point(point, side))
         });
         Some(Surroundings { point, normal, uv, face, coverage })
     }

@@ -9,7 +9,7 @@ pub mod scenes;
 pub use packets::Times;
 
 use ceiling::TextbookTest;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -22,9 +22,10 @@ use tabray_core::render::tiles::{BAND, Band};
 use tabray_core::scene::model::{Model, Object};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::world::body::AnyShader;
-use tabray_core::world::material::{Look, Material, Rgb};
+use tabray_core::world::material::{Look, Material, Reflectivity, Rgb};
+use tabray_core::world::number::Number;
 use tabray_core::world::shader::Shader;
-use tabray_core::world::surface_point::{ShaderInputs, SurfacePoint};
+use tabray_core::world::surface_point::{Point, ShaderInputs, SurfacePoint};
 use tabray_tools::clock;
 use tabray_tools::threads::renderer_with;
 
@@ -202,20 +203,20 @@ impl Shader for WithoutReflections {
         self.0.bends()
     }
 
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        self.0.bend(at)
+    fn bend<N: Number>(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]> {
+        N::looks(&*self.0).leans(at, normal)
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.0.ambient(material, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.0.diffuse(material, at)
-    }
-
-    fn specular(&self, _material: &Material, _at: &SurfacePoint) -> Rgb {
-        Rgb::ZERO
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        match of {
+            Reflectivity::Specular => Some([N::constant(0.0); 3]),
+            _ => N::looks(&*self.0).reflects(of, material, at),
+        }
     }
 
     fn emission(&self, at: &SurfacePoint) -> Rgb {

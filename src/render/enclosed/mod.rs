@@ -23,6 +23,6 @@ mod surface;
 mod tangents;
 
 pub use light::LightPoints;
-pub use number::{Enclosing, Endpoint};
+pub use number::Enclosing;
 pub use rays::{EnclosingTracer, Limits};
 pub use scene::{Colour, EnclosedScene, SceneBounds};

@@ -8,10 +8,7 @@ use tabray_world::certify::{
 };
 use tabray_world::geometry::sight::Line;
 use tabray_world::number::Number;
-use tabray_world::packets::light::{PacketLight, Sends};
-use tabray_world::scene::model::Object;
-use tabray_world::shader::{EncloseLook, EnclosedShader, LookBounds};
-use tabray_world::surface_point::PointBounds;
+use tabray_world::packets::light::PacketLight;
 
 /// The number of edges of one object on a line after which its hits are in doubt.
 const MAX_EDGES: usize = 4;
@@ -37,64 +34,10 @@ impl<N: Enclosing> Hit<N> {
     }
 }
 
-/// A precision in which shaders are enclosed.
-pub trait Endpoint: Precise {
-    /// Encloses the look of an object at a point.
-    fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>>;
-
-    /// Encloses the fraction of what is behind a point that an object covers.
-    fn coverage(object: &Object, at: &PointBounds<Self>) -> Interval<Self>;
-
-    /// Encloses the unit normals that a shader makes of outward ones at a point.
-    fn bent(
-        shader: &(dyn EnclosedShader + 'static),
-        at: &PointBounds<Self>,
-        normal: [Interval<Self>; 3],
-    ) -> Option<[Interval<Self>; 3]>;
-
-    /// Encloses what a light sends toward a point.
-    fn sent(light: &dyn PacketLight, toward: [Interval<Self>; 3]) -> [Interval<Self>; 3];
-}
-
-impl<F: Precise> Endpoint for F
-where
-    dyn EnclosedShader: EncloseLook<F>,
-    for<'l> dyn PacketLight + 'l: Sends<Interval<F>>,
-{
-    fn look(object: &Object, at: &PointBounds<Self>) -> Option<LookBounds<Self>> {
-        let mut shader: &(dyn EnclosedShader + 'static) = &*object.shader;
-        while let Some(colours) = shader.colours() {
-            shader = colours;
-        }
-        EncloseLook::<F>::look(shader, &object.material, at)
-    }
-
-    fn coverage(object: &Object, at: &PointBounds<Self>) -> Interval<Self> {
-        let shader: &(dyn EnclosedShader + 'static) = &*object.shader;
-        EncloseLook::<F>::coverage_bounds(shader, at)
-    }
-
-    fn bent(
-        shader: &(dyn EnclosedShader + 'static),
-        at: &PointBounds<Self>,
-        normal: [Interval<Self>; 3],
-    ) -> Option<[Interval<Self>; 3]> {
-        if !shader.bends() {
-            return Some(normal);
-        }
-        let normal = shader.colours().map_or(Some(normal), |colours| Self::bent(colours, at, normal))?;
-        EncloseLook::<F>::bent(shader, at, normal)
-    }
-
-    fn sent(light: &dyn PacketLight, toward: [Interval<Self>; 3]) -> [Interval<Self>; 3] {
-        light.sends(toward)
-    }
-}
-
 /// A number that encloses all values of a quantity: at one point, or anywhere in a region.
 pub trait Enclosing: Number + PartialEq {
     /// The endpoints of intervals of such numbers.
-    type End: Endpoint;
+    type End: Precise;
 
     /// Returns an endpoint.
     fn of(value: f64) -> Self::End {
@@ -148,7 +91,7 @@ pub trait Enclosing: Number + PartialEq {
     ) -> Option<[Self; 3]>;
 }
 
-impl<F: Endpoint> Enclosing for Interval<F> {
+impl<F: Precise> Enclosing for Interval<F> {
     type End = F;
 
     fn range(self) -> Self {
@@ -180,7 +123,7 @@ impl<F: Endpoint> Enclosing for Interval<F> {
     }
 
     fn sent(light: &dyn PacketLight, toward: [Self; 3]) -> [Self; 3] {
-        F::sent(light, toward)
+        F::sends(light).sends(toward)
     }
 
     fn hits(

@@ -1,14 +1,16 @@
 //! How much light passes between a point and a lamp.
 
 use super::media;
-use super::number::{Enclosing, Endpoint, Hit, coarse, ranges};
+use super::number::{Enclosing, Hit, coarse, ranges};
 use super::scene::{Colour, EnclosedScene, Path, Place};
 use super::surface::tint;
 use std::ptr;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis};
+use tabray_world::certify::Precise;
 use tabray_world::geometry::sight::Line;
-use tabray_world::surface_point::PointBounds;
+use tabray_world::material::Reflectivity;
+use tabray_world::surface_point::Point;
 
 /// The maximum number of walls of one transparent object on a shadow ray. Beyond it, the fraction of light that passes
 /// is open.
@@ -237,17 +239,18 @@ fn is_inside<N: Enclosing>(scene: &EnclosedScene, place: Place, at: [N; 3], dir:
 /// Encloses the fraction of light that passes through a place at points; `None` where it is open.
 fn pane_tint<N: Enclosing>(scene: &EnclosedScene, place: Place, at: [N; 3]) -> Option<Colour<N>> {
     let pane = &scene.model.objects[place.object];
-    let seen = PointBounds::seen(pane.shape.proven()?, pane.shader.sees(), place.part, ranges(at), None);
+    let seen = Point::seen(pane.shape.proven()?, pane.shader.sees(), place.part, ranges(at), None);
     let tint = match pane.material.transparency {
         0.0 => [N::constant(0.0); 3],
         transparency => {
-            let diffuse = N::End::look(pane, &seen)?.diffuse;
+            let diffuse =
+                N::End::looks(&*pane.shader).reflects(Reflectivity::Diffuse, &pane.material, &seen)?;
             tint(transparency, per_axis(|channel| N::enclosing(diffuse[channel])))?
         }
     };
     if !pane.shader.covers_in_part() {
         return Some(tint);
     }
-    let covered = N::enclosing(N::End::coverage(pane, &seen));
+    let covered = N::enclosing(N::End::looks(&*pane.shader).covers(&seen));
     Some(per_axis(|channel| covered * tint[channel] + (N::constant(1.0) - covered)))
 }

@@ -1,6 +1,6 @@
 //! The points of a surface that lines hit.
 
-use super::number::{Enclosing, Endpoint, ranges};
+use super::number::{Enclosing, ranges};
 use super::scene::{Colour, EnclosedScene, Place};
 use super::tangents::tangents;
 use glam::DVec2;
@@ -10,17 +10,17 @@ use tabray_world::certify::Precise;
 use tabray_world::directions::facet;
 use tabray_world::geometry::sight::Line;
 use tabray_world::interface::{Crossing, Law};
-use tabray_world::material::Rgb;
-use tabray_world::patch::{MEAN_ROUNDING, MIN_COSINE, PatchBounds, Window};
+use tabray_world::material::{Reflectivity, Rgb};
+use tabray_world::patch::{MEAN_ROUNDING, MIN_COSINE, PatchOf, Window};
 use tabray_world::rules;
 use tabray_world::scene::model::Object;
-use tabray_world::surface_point::PointBounds;
+use tabray_world::surface_point::Point;
 
 /// A patch of a surface, whose mean colour is shown.
 struct SeenPatch<F> {
     /// The maximum distance of the points from the middle, in world units along each axis.
     reach: f64,
-    bounds: Option<PatchBounds<F>>,
+    bounds: Option<PatchOf<Interval<F>>>,
 }
 
 /// The points that lines hit, and how they look there.
@@ -74,7 +74,7 @@ impl<N: Enclosing> HitPoints<N> {
             let cosine = dot(outward, dir).abs().coarse().low;
             SeenPatch {
                 reach: (1.0 + 1e-9) * width.coarse().high / cosine.max(MIN_COSINE),
-                bounds: PatchBounds::seen(ranges(at), ranges(dir), ranges(outward), width.range()),
+                bounds: PatchOf::seen(ranges(at), ranges(dir), ranges(outward), width.range()),
             }
         });
         let patch = patch.as_ref();
@@ -103,7 +103,7 @@ impl<N: Enclosing> HitPoints<N> {
         let normal = N::shading_normal(shape, at, place.part, own)?;
         let outward = if is_turned { per_axis(|axis| -normal[axis]) } else { normal };
         let (sees, outward) = (object.shader.sees(), ranges(outward));
-        let seen = |at| PointBounds::seen(shape, sees, place.part, at, Some(outward));
+        let seen = |at| Point::seen(shape, sees, place.part, at, Some(outward));
         let mut at_ranges = ranges(at);
         if let Some(SeenPatch { reach, .. }) = patch {
             let around = Interval { low: N::of(-reach), high: N::of(*reach) };
@@ -114,19 +114,19 @@ impl<N: Enclosing> HitPoints<N> {
             && let Some(uv) = seen(ranges(at)).uv
         {
             let proofs = N::End::proofs(shape);
-            bounds.find_uv(uv, |at| proofs.uv_bounds(at, place.part));
+            bounds.find_uv(uv.map(Interval::coarse), |at| proofs.uv_bounds(at, place.part));
         }
-        let point = PointBounds { patch: bounds, ..seen(at_ranges) };
-        let look = N::End::look(object, &point)?;
+        let seen_point = Point { patch: bounds, ..seen(at_ranges) };
+        let looks = N::End::looks(&*object.shader);
         let covers_in_part = object.shader.covers_in_part();
-        let coverage = covers_in_part.then(|| N::enclosing(N::End::coverage(object, &point)));
+        let coverage = covers_in_part.then(|| N::enclosing(looks.covers(&seen_point)));
         let normal = if object.shader.bends() {
             // The normals are those of the point, not the mean over a patch.
             let mut point = seen(ranges(at));
             if sees.tangents {
                 point.tangents = tangents(&object.shape, place.part, point.position, outward);
             }
-            let bent = N::End::bent(&*object.shader, &point, outward)?.map(N::enclosing);
+            let bent = looks.leans(&point, outward)?.map(N::enclosing);
             if is_turned { bent.map(|along| -along) } else { bent }
         } else {
             normal
@@ -136,8 +136,11 @@ impl<N: Enclosing> HitPoints<N> {
             let error = if patch.is_some() { MEAN_ROUNDING * of.coarse().magnitude() } else { 0.0 };
             of + Interval { low: N::of(-error), high: N::of(error) }
         };
-        let enclosing = |of: [Interval<N::End>; 3]| per_axis(|channel| N::enclosing(rounding(of[channel])));
-        let (mut ambient, diffuse) = (enclosing(look.ambient), enclosing(look.diffuse));
+        let reflectivity = |of| {
+            let of = looks.reflects(of, &object.material, &seen_point)?;
+            Some(per_axis(|channel| N::enclosing(rounding(of[channel]))))
+        };
+        let mut ambient: Colour<N> = reflectivity(Reflectivity::Ambient)?;
         let emission = object.material.emission;
         if emission != Rgb::ZERO {
             ambient = per_axis(|channel| ambient[channel] + N::constant(emission[channel]));
@@ -149,8 +152,8 @@ impl<N: Enclosing> HitPoints<N> {
             is_inside: is_turned,
             geometric_normal,
             ambient,
-            diffuse,
-            specular: enclosing(look.specular),
+            diffuse: reflectivity(Reflectivity::Diffuse)?,
+            specular: reflectivity(Reflectivity::Specular)?,
             coverage,
         })
     }

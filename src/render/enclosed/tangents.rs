@@ -1,9 +1,9 @@
 //! The directions in which u and v grow along a surface, as the tracer finds them: by comparing places near each other.
 
-use super::number::Endpoint;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, cross, dot, per_axis};
 use tabray_world::any_shape::AnyShape;
+use tabray_world::certify::Precise;
 use tabray_world::directions::orthonormal_pair;
 use tabray_world::surface_point::{NEAR, size_of};
 
@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-8;
 
 /// Encloses the unit directions in which u and v grow at points of a part of a shape with these unit normals; `None`
 /// where they are open.
-pub(super) fn tangents<F: Endpoint>(
+pub(super) fn tangents<F: Precise>(
     shape: &AnyShape,
     part: usize,
     position: [Interval<F>; 3],

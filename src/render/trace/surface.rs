@@ -100,7 +100,7 @@ impl Surface {
                 self.geometric_normals.copy(self.normals.view(count));
             }
             for lane in 0..count {
-                let bent = shader.bend(&self.seen[lane]);
+                let bent = shader.normal_at(&self.seen[lane]);
                 let is_turned = is_two_sided && self.sides[lane] == Side::Inside;
                 self.normals.set(lane, if is_turned { -bent } else { bent });
             }
@@ -132,8 +132,8 @@ impl Surface {
         self.coverage.clear();
         if object.shader.covers_in_part() {
             let coverage = |lane: usize| match self.seen.get(lane) {
-                Some(at) => object.shader.coverage(at),
-                None => object.shader.coverage(&SurfacePoint::at(self.points.get(lane))),
+                Some(at) => object.shader.coverage_at(at),
+                None => object.shader.coverage_at(&SurfacePoint::at(self.points.get(lane))),
             };
             self.coverage.extend((0..count).map(coverage));
         }

@@ -7,12 +7,12 @@ use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, per_axis};
-use tabray_world::certify::Precise;
 use tabray_world::luminous::{Luminous, Triangles};
-use tabray_world::material::{Look, Material, Rgb};
+use tabray_world::material::{Look, Material, Reflectivity, Rgb};
+use tabray_world::number::{Number, coarse, product};
 use tabray_world::patch::Patch;
-use tabray_world::shader::{LookBounds, Shader};
-use tabray_world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
+use tabray_world::shader::Shader;
+use tabray_world::surface_point::{Point, ShaderInputs, SurfacePoint};
 
 /// The materials, the images and the colours of a mesh's file.
 ///
@@ -170,14 +170,28 @@ impl Finished {
         })
     }
 
+    /// Returns a reflectivity at a point.
+    fn shown(&self, of: Reflectivity, material: &Material, at: &SurfacePoint) -> Rgb {
+        let spot = self.spot(at.position);
+        let colour = |finish: &Finish| self.colour(&spot, finish, at.patch);
+        match (of, spot.finish) {
+            (Reflectivity::Specular, None) => material.specular,
+            (_, None) => material.reflectivity(of) * self.tint(&spot),
+            (Reflectivity::Ambient, Some(finish)) => {
+                let emission = finish.emission * self.light(&spot, finish.emissions.as_ref(), at.patch);
+                material.ambient * colour(finish) + emission
+            }
+            (Reflectivity::Diffuse, Some(finish)) => colour(finish) * (1.0 - finish.metal),
+            (Reflectivity::Specular, Some(finish)) => {
+                let mirrored = if finish.metal == 0.0 { Rgb::ZERO } else { colour(finish) };
+                mirrored * finish.metal + finish.specular
+            }
+        }
+    }
+
     /// Encloses the colours of an image for these bounds of barycentric weights on a face.
-    fn enclosed<F: Precise>(
-        &self,
-        face: usize,
-        weights: [Interval; 2],
-        map: Option<&Map>,
-    ) -> [Interval<F>; 3] {
-        let white = [Interval::constant(1.0); 3];
+    fn enclosed<N: Number>(&self, face: usize, weights: [Interval; 2], map: Option<&Map>) -> [N; 3] {
+        let white = [N::constant(1.0); 3];
         let (Some(map), Some(corners)) = (map, self.surface.uv.at(face)) else { return white };
         let n = Interval::<f64>::constant;
         let texels = |axis: usize| {
@@ -203,11 +217,50 @@ impl Shader for Finished {
         ShaderInputs { patch: self.has_images, ..inputs }
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        let spot = self.spot(at.position);
-        let Some(finish) = spot.finish else { return material.ambient * self.tint(&spot) };
-        let emission = finish.emission * self.light(&spot, finish.emissions.as_ref(), at.patch);
-        material.ambient * self.colour(&spot, finish, at.patch) + emission
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        if let Some(at) = at.plain {
+            return Some(constants(self.shown(of, material, at)));
+        }
+        if self.bends {
+            return None;
+        }
+        let n = N::constant;
+        let coarse = at.position.map(coarse);
+        let face = self.surface.face_at(DVec3::from(coarse.map(Interval::middle)));
+        if !self.surface.is_alone(coarse, |other| other == face) {
+            let (most, own) = (self.most(material).reflectivity(of), material.reflectivity(of));
+            // The mesh's own ambient and specular reflectivities may be negative.
+            return Some(per_axis(|channel| {
+                let own = own[channel] * self.brightest_tint()[channel];
+                n(0.0).hull(n(most[channel])).hull(n(own))
+            }));
+        }
+        let weights = uv::bounds_on_triangle(self.surface.corners(face), coarse);
+        let tint = match self.surface.colours.at(face) {
+            None => [n(1.0); 3],
+            Some(colours) => per_axis(|channel| {
+                let [a, b, c] = colours.map(|colour| n(colour[channel].into()));
+                let [second, third] = weights.map(|weight| N::any(weight.low, weight.high));
+                a + second * (b - a) + third * (c - a)
+            }),
+        };
+        let own = constants(material.reflectivity(of));
+        let Some(finish) = self.finish(face) else {
+            return Some(if of == Reflectivity::Specular { own } else { product(own, tint) });
+        };
+        let light = |map: &Option<Map>| self.enclosed::<N>(face, weights, map.as_ref());
+        let colour = product(product(constants(finish.colour), light(&finish.colours)), tint);
+        let (times, more) = match of {
+            Reflectivity::Ambient => (own, product(constants(finish.emission), light(&finish.emissions))),
+            Reflectivity::Diffuse => ([n(1.0 - finish.metal); 3], [n(0.0); 3]),
+            Reflectivity::Specular => ([n(finish.metal); 3], constants(finish.specular)),
+        };
+        Some(per_axis(|channel| colour[channel] * times[channel] + more[channel]))
     }
 
     fn emission(&self, at: &SurfacePoint) -> Rgb {
@@ -234,38 +287,26 @@ impl Shader for Finished {
         parts.into_iter().map(|(light, faces)| (luminous(faces), light)).collect()
     }
 
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        let spot = self.spot(at.position);
-        let Some(finish) = spot.finish else { return material.diffuse * self.tint(&spot) };
-        self.colour(&spot, finish, at.patch) * (1.0 - finish.metal)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        let spot = self.spot(at.position);
-        let Some(finish) = spot.finish else { return material.specular };
-        let mirrored = if finish.metal == 0.0 { Rgb::ZERO } else { self.colour(&spot, finish, at.patch) };
-        mirrored * finish.metal + finish.specular
-    }
-
     fn bends(&self) -> bool {
         self.bends
     }
 
     /// Applies the normal map along the directions of the texture coordinates on the face.
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
+    fn bend<N: Number>(&self, at: &Point<N>, _normal: [N; 3]) -> Option<[N; 3]> {
+        let at = at.plain?;
         let spot = self.spot(at.position);
         let Some((map, strength)) = spot.finish.and_then(|finish| finish.normals.as_ref()) else {
-            return at.normal;
+            return Some(constants(at.normal));
         };
         let along = self.surface.uv.at(spot.face).and_then(|uv| along(spot.corners, uv));
         let (Some([along_u, along_v]), Some([place, _])) = (along, self.place(&spot, map, None)) else {
-            return at.normal;
+            return Some(constants(at.normal));
         };
         let DVec3 { x, y, z } =
             2.0 * map.blended(place, |column, row| map.texture.numbers(column, row)) - 1.0;
         let upright = |along: DVec3| (along - along.dot(at.normal) * at.normal).normalize_or_zero();
         let bent = *strength * (x * upright(along_u) + y * upright(along_v)) + z.max(0.0) * at.normal;
-        bent.try_normalize().unwrap_or(at.normal)
+        Some(constants(bent.try_normalize().unwrap_or(at.normal)))
     }
 
     fn cuts_out(&self) -> bool {
@@ -282,24 +323,23 @@ impl Shader for Finished {
         self.covers_in_part
     }
 
-    fn coverage(&self, at: &SurfacePoint) -> f64 {
-        let spot = self.spot(at.position);
-        let opacity = spot.finish.and_then(|finish| finish.opacity.as_ref());
-        let covered =
-            opacity.map_or(1.0, |opacity| opacity.coverage(|map| Some(self.place(&spot, map, None)?[0])));
-        covered * self.covered_by_corners(&spot)
-    }
-
-    fn enclose_coverage<F: Precise>(&self, at: &PointBounds<F>) -> Interval<F> {
+    fn coverage<N: Number>(&self, at: &Point<N>) -> N {
+        if let Some(at) = at.plain {
+            let spot = self.spot(at.position);
+            let opacity = spot.finish.and_then(|finish| finish.opacity.as_ref());
+            let covered =
+                opacity.map_or(1.0, |opacity| opacity.coverage(|map| Some(self.place(&spot, map, None)?[0])));
+            return N::constant(covered * self.covered_by_corners(&spot));
+        }
         let range = |finish: Option<&Finish>| {
             finish.and_then(|finish| finish.opacity.as_ref()).map_or([1.0; 2], Opacity::range)
         };
-        let coarse = at.position.map(Interval::coarse);
+        let coarse = at.position.map(coarse);
         let face = self.surface.face_at(DVec3::from(coarse.map(Interval::middle)));
         let is_known =
             self.surface.colours.is_empty() && self.surface.is_alone(coarse, |other| other == face);
         let [low, high] = if is_known { range(self.finish(face)) } else { [0.0, 1.0] };
-        Interval::constant(low).hull(Interval::constant(high))
+        N::any(low, high)
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
@@ -310,55 +350,6 @@ impl Shader for Finished {
             map.and_then(|map| self.place(&spot, map, None)).map_or(DVec2::ZERO, |[place, _]| place.floor());
         // Multiples of 2^32, which no image reaches, tell materials apart.
         place + DVec2::new(f64::from(slot) * 4_294_967_296.0, 0.0)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        if self.bends {
-            return None;
-        }
-        let n = Interval::<F>::constant;
-        let coarse = at.position.map(Interval::coarse);
-        let face = self.surface.face_at(DVec3::from(coarse.map(Interval::middle)));
-        if !self.surface.is_alone(coarse, |other| other == face) {
-            let Look { ambient, diffuse, specular } = self.most(material);
-            // The mesh's own ambient and specular reflectivities may be negative.
-            let within = |most: Rgb, own: Rgb| {
-                per_axis(|channel| {
-                    n(0.0).hull(n(most[channel])).hull(n(own[channel] * self.brightest_tint()[channel]))
-                })
-            };
-            return Some(LookBounds {
-                ambient: within(ambient, material.ambient),
-                diffuse: within(diffuse, material.diffuse),
-                specular: within(specular, material.specular),
-            });
-        }
-        let weights = uv::bounds_on_triangle(self.surface.corners(face), coarse);
-        let tint = match self.surface.colours.at(face) {
-            None => [n(1.0); 3],
-            Some(colours) => per_axis(|channel| {
-                let [a, b, c] = colours.map(|colour| n(colour[channel].into()));
-                let [second, third] = weights.map(Interval::<F>::from_f64);
-                a + second * (b - a) + third * (c - a)
-            }),
-        };
-        let times = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            per_axis(|channel| one[channel] * other[channel])
-        };
-        let own = LookBounds::from(material);
-        let Some(finish) = self.finish(face) else {
-            let [ambient, diffuse] = [own.ambient, own.diffuse].map(|colour| times(colour, tint));
-            return Some(LookBounds { ambient, diffuse, ..own });
-        };
-        let light = |map: &Option<Map>| self.enclosed::<F>(face, weights, map.as_ref());
-        let colour = times(times(constants(finish.colour), light(&finish.colours)), tint);
-        let emission = times(constants(finish.emission), light(&finish.emissions));
-        let ambient = times(own.ambient, colour);
-        Some(LookBounds {
-            ambient: per_axis(|channel| ambient[channel] + emission[channel]),
-            diffuse: colour.map(|channel| channel * n(1.0 - finish.metal)),
-            specular: per_axis(|channel| colour[channel] * n(finish.metal) + n(finish.specular[channel])),
-        })
     }
 
     /// Returns bounds of the appearances of all faces, unless the mesh's own diffuse colour is negative.

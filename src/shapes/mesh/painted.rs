@@ -5,11 +5,12 @@ use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use tabray_exact::interval::Interval;
+use tabray_exact::scalar::constants;
 use tabray_world::body::Warning;
-use tabray_world::certify::Precise;
-use tabray_world::material::{Look, Material, Rgb};
-use tabray_world::shader::{LookBounds, Shader};
-use tabray_world::surface_point::{PointBounds, SurfacePoint};
+use tabray_world::material::{Look, Material, Reflectivity, Rgb};
+use tabray_world::number::{Number, coarse, hull};
+use tabray_world::shader::Shader;
+use tabray_world::surface_point::{Point, SurfacePoint};
 use tabray_world::text;
 
 /// The colours of a mesh whose faces have their own materials.
@@ -73,30 +74,26 @@ fn first_of(names: &[&String]) -> String {
 }
 
 impl Shader for Painted {
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.at(material, at.position).ambient
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.at(material, at.position).diffuse
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.at(material, at.position).specular
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        if let Some(at) = at.plain {
+            return Some(constants(self.at(material, at.position).reflectivity(of)));
+        }
+        let coarse = at.position.map(coarse);
+        let slot = self.slot(DVec3::from(coarse.map(Interval::middle)));
+        if self.surface.is_alone(coarse, |face| self.surface.slots[face] == slot) {
+            return Some(constants(self.material(material, slot).reflectivity(of)));
+        }
+        let all = self.materials.iter().flatten().map(|other| &**other).chain([material]);
+        all.map(|material| constants(material.reflectivity(of))).reduce(hull)
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
         DVec2::new(f64::from(self.slot(at.position)), 0.0)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        let coarse = at.position.map(Interval::coarse);
-        let slot = self.slot(DVec3::from(coarse.map(Interval::middle)));
-        if self.surface.is_alone(coarse, |face| self.surface.slots[face] == slot) {
-            return Some(self.material(material, slot).into());
-        }
-        let others = self.materials.iter().flatten().map(|other| LookBounds::from(&**other));
-        Some(others.fold(material.into(), |all: LookBounds<F>, other| all.hull(&other)))
     }
 
     /// Returns the largest reflectivities of all materials, unless one has a negative diffuse colour.

@@ -5,20 +5,20 @@ use super::packets::PART;
 use super::shape::Placed;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
-use tabray_exact::interval::Interval;
+use tabray_exact::scalar::constants;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::body::{AnyShader, Body, MakeBoundary};
-use tabray_world::certify::Precise;
 use tabray_world::geometry::placement::Placement;
 use tabray_world::geometry::ray_packet::split;
 use tabray_world::luminous::Luminous;
-use tabray_world::material::{Look, Material, Rgb};
+use tabray_world::material::{Look, Material, Reflectivity, Rgb};
+use tabray_world::number::Number;
 use tabray_world::packets::shader::PacketShader;
-use tabray_world::patch::{Patch, PatchBounds};
-use tabray_world::shader::{self, EachPart, LookBounds, Plain, Shader, SurfacePoints};
+use tabray_world::patch::{Patch, PatchOf};
+use tabray_world::shader::{EachPart, Plain, Shader, SurfacePoints};
 use tabray_world::simd::cpu::Cpu;
 use tabray_world::simd::soa::Vectors;
-use tabray_world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
+use tabray_world::surface_point::{Point, ShaderInputs, SurfacePoint};
 
 impl Placed {
     /// Makes a copy of an object with this material. If the object ends like planes do, the copy ends at `max_z`, in
@@ -68,15 +68,18 @@ impl PlacedShader {
         self.shader.as_deref().unwrap_or(&*self.placed.body.shader)
     }
 
-    /// Maps the bounds of a point from world space to object space.
-    fn object_bounds<F: Precise>(&self, at: &PointBounds<F>) -> PointBounds<F> {
+    /// Calls a function with a point in object space.
+    fn in_own<N: Number, R>(&self, at: &Point<N>, call: impl FnOnce(&Point<N>) -> R) -> R {
+        if let Some(at) = at.plain {
+            return call(&Point::of(&self.object_point(at)));
+        }
         let placement = &self.placed.placement;
-        let patch = at.patch.map(|patch| PatchBounds {
+        let patch = at.patch.map(|patch| PatchOf {
             middle: placement.point(patch.middle),
             sides: patch.sides.map(|side| placement.vector(side)),
             ..patch
         });
-        PointBounds { position: placement.point(at.position), normal: None, patch, tangents: None, ..*at }
+        call(&Point { position: placement.point(at.position), normal: None, patch, tangents: None, ..*at })
     }
 
     /// Maps a point from world space to object space.
@@ -95,16 +98,13 @@ impl Shader for PlacedShader {
         self.own().sees()
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.own().ambient(material, &self.object_point(at))
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.own().diffuse(material, &self.object_point(at))
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.own().specular(material, &self.object_point(at))
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        self.in_own(at, |at| N::looks(self.own()).reflects(of, material, at))
     }
 
     fn emission(&self, at: &SurfacePoint) -> Rgb {
@@ -145,9 +145,12 @@ impl Shader for PlacedShader {
         self.own().bends()
     }
 
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        let own = self.own().bend(&self.object_point(at));
-        (self.placed.to_object_space.transpose() * own).try_normalize().unwrap_or(at.normal)
+    /// Proofs know no bent normals of copies.
+    fn bend<N: Number>(&self, at: &Point<N>, _normal: [N; 3]) -> Option<[N; 3]> {
+        let at = at.plain?;
+        let own = self.own().normal_at(&self.object_point(at));
+        let bent = (self.placed.to_object_space.transpose() * own).try_normalize();
+        Some(constants(bent.unwrap_or(at.normal)))
     }
 
     // The holes of the object's shader are already holes of its shape.
@@ -163,16 +166,8 @@ impl Shader for PlacedShader {
         self.own().covers_in_part()
     }
 
-    fn coverage(&self, at: &SurfacePoint) -> f64 {
-        self.own().coverage(&self.object_point(at))
-    }
-
-    fn enclose_coverage<F: Precise>(&self, at: &PointBounds<F>) -> Interval<F> {
-        shader::enclosed_coverage(self.own(), &self.object_bounds(at))
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        shader::enclosed(self.own(), material, &self.object_bounds(at))
+    fn coverage<N: Number>(&self, at: &Point<N>) -> N {
+        self.in_own(at, |at| N::looks(self.own()).covers(at))
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

@@ -1,13 +1,12 @@
 //! The reflectivities of a part of a solid.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::sync::Arc;
-use tabray_exact::interval::Interval;
 use tabray_world::body::Body;
-use tabray_world::certify::Precise;
-use tabray_world::material::{Look, Material, Rgb};
-use tabray_world::shader::{self, LookBounds, Shader};
-use tabray_world::surface_point::{PointBounds, ShaderInputs, SurfacePoint};
+use tabray_world::material::{Look, Material, Reflectivity, Rgb};
+use tabray_world::number::Number;
+use tabray_world::shader::Shader;
+use tabray_world::surface_point::{Point, ShaderInputs, SurfacePoint};
 
 /// The reflectivities of the object that a part comes from.
 pub struct PartShader(pub Arc<Body>);
@@ -17,16 +16,13 @@ impl Shader for PartShader {
         self.0.shader.sees()
     }
 
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.0.shader.ambient(material, at)
-    }
-
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.0.shader.diffuse(material, at)
-    }
-
-    fn specular(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        self.0.shader.specular(material, at)
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        N::looks(&*self.0.shader).reflects(of, material, at)
     }
 
     fn emission(&self, at: &SurfacePoint) -> Rgb {
@@ -45,24 +41,16 @@ impl Shader for PartShader {
         self.0.shader.bends()
     }
 
-    fn bend(&self, at: &SurfacePoint) -> DVec3 {
-        self.0.shader.bend(at)
+    fn bend<N: Number>(&self, at: &Point<N>, normal: [N; 3]) -> Option<[N; 3]> {
+        N::looks(&*self.0.shader).leans(at, normal)
     }
 
     fn covers_in_part(&self) -> bool {
         self.0.shader.covers_in_part()
     }
 
-    fn coverage(&self, at: &SurfacePoint) -> f64 {
-        self.0.shader.coverage(at)
-    }
-
-    fn enclose_coverage<F: Precise>(&self, at: &PointBounds<F>) -> Interval<F> {
-        shader::enclosed_coverage(&*self.0.shader, at)
-    }
-
-    fn enclose<F: Precise>(&self, material: &Material, at: &PointBounds<F>) -> Option<LookBounds<F>> {
-        shader::enclosed(&*self.0.shader, material, at)
+    fn coverage<N: Number>(&self, at: &Point<N>) -> N {
+        N::looks(&*self.0.shader).covers(at)
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

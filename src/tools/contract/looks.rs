@@ -16,7 +16,7 @@ use tabray_core::world::body::ShaderFactory;
 use tabray_core::world::emitter::{Emitter, LightSample};
 use tabray_core::world::hittable::Curvature;
 use tabray_core::world::interface::Crossing;
-use tabray_core::world::material::{Look, Material, Rgb};
+use tabray_core::world::material::{Look, Material, Reflectivity, Rgb};
 use tabray_core::world::packets::light::PacketLight;
 use tabray_core::world::packets::light::{LightSamples, ShadingPoints};
 use tabray_core::world::packets::shader::{PacketShader, SurfacePoints};
@@ -58,14 +58,14 @@ pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault>
         transparency: 0.2,
         interface: None,
     };
-    let one = [shader.ambient(&material, at), shader.diffuse(&material, at), shader.specular(&material, at)];
+    let one = Reflectivity::ALL.map(|of| shader.colour_at(of, &material, at));
     let found = |what: String| format!("{what} at {}", at.position);
     for (colour, what) in one.iter().zip(["ambient", "diffuse", "specular"]) {
         if !colour.is_finite() || colour.min_element() < 0.0 {
             return Err(Promise::ReflectivityIsSound.fault(found(format!("`{what}` is {colour}"))));
         }
     }
-    let covered = shader.coverage(at);
+    let covered = shader.coverage_at(at);
     if shader.covers_in_part() && !(0.0..=1.0).contains(&covered) {
         return Err(Promise::ReflectivityIsSound.fault(found(format!("`coverage` is {covered}"))));
     }
@@ -84,7 +84,7 @@ pub fn shader(shader: &dyn PacketShader, at: &SurfacePoint) -> Result<(), Fault>
         let found = found(format!("`brightest` is {limit:?}, and it returns {one:?}"));
         return Err(Promise::ReflectivityIsSound.fault(found));
     }
-    let bent = shader.bend(at);
+    let bent = shader.normal_at(at);
     if shader.bends() && (bent.length() - 1.0).abs() > 1e-9 {
         return Err(
             Promise::NormalIsUnit.fault(found(format!("`bend` is {bent}, of length {}", bent.length())))

@@ -280,11 +280,11 @@ mod tests {
     use glam::DVec3;
     use tabray_core::world::body::ShaderFactory;
     use tabray_core::world::light::Light;
-    use tabray_core::world::material::{Look, Material, Rgb};
+    use tabray_core::world::material::{Look, Material, Reflectivity, Rgb};
     use tabray_core::world::number::Number;
     use tabray_core::world::shader::{Anchor, Plain, Shader};
-    use tabray_core::world::surface_point::{ShaderInputs, SurfacePoint};
-    use tabray_exact::scalar::constants;
+    use tabray_core::world::surface_point::{Point, ShaderInputs};
+    use tabray_exact::scalar::{constants, per_axis, unit};
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
     static UNBOUNDED: Profile = Profile::new("unbounded", "a horn", "1 / y");
@@ -294,16 +294,33 @@ mod tests {
     struct Spokes(Anchor);
 
     impl Shader for Spokes {
-        fn ambient(&self, _material: &Material, at: &SurfacePoint) -> Rgb {
-            Rgb::ONE + (at.position - self.0.origin).normalize()
+        fn reflectivity<N: Number>(
+            &self,
+            of: Reflectivity,
+            material: &Material,
+            at: &Point<N>,
+        ) -> Option<[N; 3]> {
+            let from = per_axis(|axis| at.position[axis] - N::constant(self.0.origin[axis]));
+            Some(match of {
+                Reflectivity::Ambient => unit(from).map(|along| N::constant(1.0) + along),
+                _ => constants(material.reflectivity(of)),
+            })
         }
     }
 
     struct Uneven;
 
     impl Shader for Uneven {
-        fn ambient(&self, _material: &Material, at: &SurfacePoint) -> Rgb {
-            Rgb::splat(at.position.x.abs())
+        fn reflectivity<N: Number>(
+            &self,
+            of: Reflectivity,
+            material: &Material,
+            at: &Point<N>,
+        ) -> Option<[N; 3]> {
+            Some(match of {
+                Reflectivity::Ambient => [at.position[0].abs(); 3],
+                _ => constants(material.reflectivity(of)),
+            })
         }
 
         fn uniform(&self, material: &Material) -> Option<Look> {
@@ -371,8 +388,8 @@ mod tests {
             true
         }
 
-        fn bend(&self, at: &SurfacePoint) -> DVec3 {
-            at.normal + DVec3::X
+        fn bend<N: Number>(&self, _at: &Point<N>, [x, y, z]: [N; 3]) -> Option<[N; 3]> {
+            Some([x + N::constant(1.0), y, z])
         }
     }
 

@@ -10,6 +10,8 @@ use super::equation::{Equation, HitEnclosure};
 use super::footprint::OverFootprint;
 use super::search;
 use crate::geometry::sight::Line;
+use crate::packets::light::{PacketLight, Sends};
+use crate::shader::{EnclosedShader, Looks};
 use f256::f256;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
@@ -162,6 +164,12 @@ pub trait Precise: Float {
         None
     }
 
+    /// Returns a shader of any type, to be asked in intervals of this precision.
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Interval<Self>>;
+
+    /// Returns a light of any type, to be asked in intervals of this precision.
+    fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>>;
+
     /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
     fn narrow(of: Fine) -> Interval<Self>;
 
@@ -185,6 +193,14 @@ impl Precise for f64 {
         leaves: bool,
     ) -> Option<Vec<HitEnclosure<Self>>> {
         algebraic::all_hits::<f64>(shape, line, leaves)
+    }
+
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Interval<Self>> {
+        of
+    }
+
+    fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>> {
+        of
     }
 
     fn narrow(of: Fine) -> Interval {
@@ -221,6 +237,14 @@ impl Precise for f256 {
         algebraic::all_hits::<f256>(shape, line, leaves)
     }
 
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Interval<Self>> {
+        of
+    }
+
+    fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>> {
+        of
+    }
+
     fn narrow(of: Fine) -> Wide {
         of.wide()
     }
@@ -246,6 +270,14 @@ impl Precise for Fraction {
     fn all_along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
         let all = (!is_closed(shape)).then(|| f256::all_along(shape, &wide(line), leaves))?;
         Some(all?.into_iter().map(finely).collect())
+    }
+
+    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Interval<Self>> {
+        of
+    }
+
+    fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>> {
+        of
     }
 
     fn narrow(of: Fine) -> Fine {

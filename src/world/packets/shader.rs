@@ -2,11 +2,11 @@
 
 pub use crate::shader::{PacketShader, SurfacePoints};
 
-use crate::material::{Material, Rgb};
+use crate::material::{Material, Reflectivity, Rgb};
 use crate::shader::Shader;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::ViewMut;
-use crate::surface_point::SurfacePoint;
+use crate::surface_point::{Point, SurfacePoint};
 
 impl<T: Shader> PacketShader for T {
     fn ambient_and_specular(
@@ -69,10 +69,10 @@ kernels! {
         let (mut ambients, mut speculars) = (ambients.first(count), speculars.first(count));
         // One loop for both is compiled without vector instructions where a shader chooses among colours.
         each!(points, lane, at, {
-            ambients.set(lane, shader.ambient(material, at));
+            ambients.set(lane, colour(shader, Reflectivity::Ambient, material, at));
         });
         each!(points, lane, at, {
-            let specular = shader.specular(material, at);
+            let specular = colour(shader, Reflectivity::Specular, material, at);
             speculars.set(lane, specular);
             any |= is_any(specular);
         });
@@ -84,7 +84,7 @@ kernels! {
         let (count, mut any) = (points.positions.len(), 0);
         let mut out = out.first(count);
         each!(points, lane, at, {
-            let diffuse = shader.diffuse(material, at);
+            let diffuse = colour(shader, Reflectivity::Diffuse, material, at);
             out.set(lane, diffuse);
             any |= is_any(diffuse);
         });
@@ -101,6 +101,11 @@ kernels! {
             out[lane] = column.rotate_left(17) ^ row.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         });
     }
+}
+
+#[inline(always)]
+fn colour<T: Shader>(shader: &T, of: Reflectivity, material: &Material, at: &SurfacePoint) -> Rgb {
+    shader.reflectivity(of, material, &Point::<f64>::of(at)).map_or(Rgb::ZERO, Rgb::from)
 }
 
 /// Returns 1 for a colour that is not black, and 0 for black.

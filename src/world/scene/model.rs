@@ -5,7 +5,7 @@ use crate::background::Background;
 use crate::body::{AnyShader, Label, NamedBody, ShaderFactory};
 use crate::geometry::ray::Side;
 use crate::lamp::Lamp;
-use crate::material::{Material, Rgb};
+use crate::material::{Material, Reflectivity, Rgb};
 use crate::scene::kind::Kind;
 use crate::scene::store::Record;
 use crate::scene::value::{Datum, Type};
@@ -172,7 +172,7 @@ impl Object {
         if !self.shader.covers_in_part() {
             return tint;
         }
-        let covered = self.shader.coverage(at);
+        let covered = self.shader.coverage_at(at);
         covered * tint + Rgb::splat(1.0 - covered)
     }
 
@@ -181,7 +181,7 @@ impl Object {
     /// is at most 1, and below 0 where the diffuse colour is below 0.
     #[inline]
     pub fn tint(&self, at: &SurfacePoint) -> Rgb {
-        let diffuse = self.shader.diffuse(&self.material, at);
+        let diffuse = self.shader.colour_at(Reflectivity::Diffuse, &self.material, at);
         let strongest = diffuse.max_element();
         let colour = if strongest > 0.0 { diffuse / strongest } else { DVec3::ONE };
         self.material.transparency * colour

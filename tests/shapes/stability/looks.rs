@@ -7,12 +7,13 @@ use std::f64::consts::{PI, TAU};
 use tabray::geometry::{Ray, Sight};
 use tabray::render::{Plan, to_byte, trace};
 use tabray::scene::{Choice, Model};
+use tabray::world::material::Reflectivity;
 use tabray::world::{Accuracy, Rgb, SurfacePoint};
 
 /// Returns the ambient colour of the first object at a point.
 fn look(model: &Model, at: DVec3) -> Rgb {
     let object = &model.objects[0];
-    object.shader.ambient(&object.material, &SurfacePoint::at(at))
+    object.shader.colour_at(Reflectivity::Ambient, &object.material, &SurfacePoint::at(at))
 }
 
 /// Returns the notes' angle around z, from 0 to pi.

@@ -21,27 +21,24 @@ struct Template {
     anchor: Anchor,
 }
 
-impl Template {
-    /// Returns the brightness of the surface at a point.
-    #[inline]
-    fn brightness(&self, at: &SurfacePoint) -> f64 {
-        let height = (at.position - self.anchor.origin).y / self.anchor.unit;
-        0.6 + 0.4 * libm::sin(std::f64::consts::TAU * self.rings * height)
-    }
-}
-
-// Whatever is not defined here, such as `specular`, is that of the material. A shader that asks for more than the
-// position, such as the normal or u and v, says so in `sees`; one that bends normals defines `bends` and `bend`.
+// Whatever is not defined here is that of the material. A shader that asks for more than the position, such as the normal
+// or u and v, says so in `sees`; one that bends normals defines `bends` and `bend`.
 impl Shader for Template {
-    /// Returns the emission of the surface.
+    /// Returns a reflectivity at a point. `N` is `f64` for pictures; for proofs of colours, it is a number that encloses
+    /// all points of a box.
     #[inline]
-    fn ambient(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.ambient * self.brightness(at)
-    }
-
-    /// Returns the diffuse reflection coefficients.
-    #[inline]
-    fn diffuse(&self, material: &Material, at: &SurfacePoint) -> Rgb {
-        material.diffuse * self.brightness(at)
+    fn reflectivity<N: Number>(
+        &self,
+        of: Reflectivity,
+        material: &Material,
+        at: &Point<N>,
+    ) -> Option<[N; 3]> {
+        let (n, own) = (N::constant, constants(material.reflectivity(of)));
+        let height = (at.position[1] - n(self.anchor.origin.y)) / n(self.anchor.unit);
+        let brightness = n(0.6) + n(0.4) * (n(std::f64::consts::TAU * self.rings) * height).sin();
+        Some(match of {
+            Reflectivity::Specular => own,
+            _ => own.map(|channel| brightness * channel),
+        })
     }
 }

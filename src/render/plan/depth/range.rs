@@ -17,11 +17,9 @@ use glam::DVec3;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::per_axis;
 use tabray_world::geometry::aabb::Aabb;
-use tabray_world::material::{Look, Rgb};
+use tabray_world::material::{Look, Reflectivity, Rgb};
 use tabray_world::scene::model::{Model, Object};
-use tabray_world::shader::EncloseLook;
-use tabray_world::shader::LookBounds;
-use tabray_world::surface_point::PointBounds;
+use tabray_world::surface_point::Point;
 
 /// A limit of coordinates: with larger ones, the products of a scene's numbers overflow.
 const FAR: f64 = 1e60;
@@ -85,7 +83,7 @@ fn least(model: &Model, darkest: Rgb) -> Option<Rgb> {
     }
     let left = model.objects.iter().fold(Rgb::ONE, |least, object| least.min(left(object)));
     model.objects.iter().try_fold(left * darkest, |least, object| {
-        let LookBounds { ambient, diffuse, specular } = look(object)?;
+        let [ambient, diffuse, specular] = look(object)?;
         if ![ambient, diffuse, specular].into_iter().all(is_positive) {
             return None;
         }
@@ -114,11 +112,14 @@ fn left(object: &Object) -> Rgb {
     (1.0 - 1e-9) * Rgb::from(medium.passed((1.0 + 1e-9) * longest))
 }
 
-/// Encloses the look of an object, at all of its points.
-fn look(object: &Object) -> Option<LookBounds<f64>> {
+/// Encloses the reflectivities of an object, at all of its points.
+fn look(object: &Object) -> Option<[[Interval; 3]; 3]> {
     let position = around(object.shape.bounds());
-    let points = PointBounds { position, normal: None, uv: None, face: None, patch: None, tangents: None };
-    EncloseLook::<f64>::look(&*object.shader, &object.material, &points)
+    let points =
+        Point { position, normal: None, uv: None, face: None, patch: None, tangents: None, plain: None };
+    let [ambient, diffuse, specular] =
+        Reflectivity::ALL.map(|of| object.shader.reflects(of, &object.material, &points));
+    Some([ambient?, diffuse?, specular?])
 }
 
 /// Returns the intervals of a box, or of everywhere.
