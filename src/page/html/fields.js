@@ -71,7 +71,8 @@ const showFields = ({ name, attributes }) => {
       }
       const slider = document.createElement('input'), number = +value
       const reach = Math.max(1, 2 * Math.abs(number))
-      const least = { any: -Infinity, 'not negative': 0, positive: whole ? 1 : (number + reach) / 400 }[signs]
+      const any = isColour && number >= 0 ? 0 : -Infinity
+      const least = { any, 'not negative': 0, positive: whole ? 1 : (number + reach) / 400 }[signs]
       const [low, high] = range && range[1] - range[0] < 1e4 ? range : [Math.max(number - reach, least), number + reach]
       Object.assign(slider, { type: 'range', min: low, max: high, step: whole ? 1 : (high - low) / 400, value, title: about })
       slider.setAttribute('aria-label', (words ?? of) + which)

@@ -222,7 +222,9 @@ fn sliders_of_what_may_not_be_negative_end_at_0() {
     let radius = least("sphere ball", "#field-radius-0");
     assert!(radius > 0.0 && radius < 0.02, "{radius}");
     assert!(least("sphere ball", "#field-center-0") < 0.0);
+    // A colour may be negative, but hardly is meant to be.
     assert_eq!(least("material paint", "#field-ambient-0"), 0.0);
+    assert_eq!(least("material paint", "#field-shininess-0"), 0.0);
     assert!(least("camera eye", "#field-worlddim-0") > 0.0);
 }
 
