@@ -68,7 +68,7 @@ fn defines(text: &str, name: &str) -> bool {
 
 #[test]
 fn the_scenes_that_the_docs_show_are_read() {
-    for (page, least) in [("language.md", 12), ("light.md", 2), ("gallery.md", 25)] {
+    for (page, least) in [("language.md", 12), ("light.md", 2), ("gallery.md", 25), ("figures.md", 4)] {
         let shown = shown_in(page);
         assert!(shown.len() >= least, "{page} shows {shown:?}");
         for shown in shown {
