@@ -261,6 +261,22 @@ fn a_mirror_throws_a_lamp_s_light_on_a_floor() {
 }
 
 #[test]
+fn glass_throws_a_lamp_s_light_on_a_floor_as_that_of_what_emits() {
+    let lit = |lamp: &str| {
+        mean(&floor(
+            1,
+            &format!(
+                "glass clear {{ index 1.5 }} sphere lens {{ material clear center 0 1.2 0 radius 0.6 }} {lamp}"
+            ),
+        ))
+    };
+    let by_lamp = lit("sphere_light bulb { location 0 2.6 0 radius 0.5 emissivity 9 9 9 }");
+    let emitted =
+        lit("material glow { emission 9 9 9 } sphere bulb { material glow center 0 2.6 0 radius 0.5 }");
+    assert!(((by_lamp - emitted) / emitted).abs().max_element() < 0.02, "{by_lamp} for {emitted}");
+}
+
+#[test]
 fn lamps_and_skies_are_counted_once() {
     // A single matt floor has no other surface to receive light from.
     for shines in [

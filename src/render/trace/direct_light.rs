@@ -119,13 +119,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             (resized(t_max, count), resized(shines, count), resized(blocked, count));
         let paths = LightPaths { from: *around, to: source, toward };
         let uniform = light.uniform().filter(|_| !self.fades(light));
+        let are_mirrored = light.emitter().is_none_or(|emitter| emitter.has_highlights());
         let mut tint = Rgb::ONE;
         let passes = W::SEES || self.plan.has_glass;
         if passes {
             if let Some(sent) = uniform {
                 emissivity.fill(count, sent);
             }
+            // Where light goes on, rays meet what is bent on the way by chance, if they can see it.
+            self.scratch.unbent = self.plan.camera.bounces != 0 && !are_mirrored;
             let (blocker, passed) = self.pass(group, surface, &paths, t_max, shines, emissivity);
+            self.scratch.unbent = false;
             if W::SEES
                 && let Some(blocker) = blocker
             {
@@ -137,7 +141,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         } else {
             self.shadow(group, surface, &paths, t_max, shadows, blocked);
         }
-        let are_mirrored = light.emitter().is_none_or(|emitter| emitter.has_highlights());
         let lit = LitPoints {
             toward: toward.view(count),
             seen: group.dir.view(count),

@@ -213,8 +213,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     _ => is_flat,
                 };
                 let (weight, shows_patches) = (passed * weight, before.shows_patches && keeps);
-                let counted = before.counted.after(kind);
                 let is_unbent = kind == RayKind::Transmitted && !object.bends_light();
+                let counted = before.counted.after(kind, is_unbent);
                 let density = match kind {
                     RayKind::Transmitted if is_unbent => Some(before.density),
                     RayKind::Reflected if aims && !surface.is_in_medium(object, lane) => {

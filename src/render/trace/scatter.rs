@@ -4,8 +4,8 @@
 //! the cosine of its angle. Lamps and skies that light are met by aim: they are [direct light](super::direct_light).
 //! What comes from other surfaces is met by one ray in a direction that the sample draws with a density of the cosine
 //! over pi, so that its light counts `d` times. The ray counts neither lamps nor skies again, nor ambient light, which
-//! stands in for light from everywhere. What objects emit is met by chance and [by aim](super::aim). Shadow rays pass through glass in straight lines, so lamps behind glass are met
-//! by aim, too; after a mirror, no aim is possible, and what shines there counts.
+//! stands in for light from everywhere. What objects emit is met by chance and [by aim](super::aim). After a mirror, or
+//! glass that bends light, no aim is possible, and what shines there counts.
 //!
 //! Behind a matt surface, a path goes on in one way alone, which is chosen by chance in proportion to what each can
 //! bring, and a path that can bring little ends by chance (Russian roulette: Arvo and Kirk, "Particle transport and
@@ -37,16 +37,16 @@ pub(super) enum CountedLight {
     All,
     /// The emission of surfaces: the ray leaves a matt surface, where lamps and skies are met by aim.
     Emission,
-    /// Also lamps and skies that light: the ray leaves a matt surface by a mirror.
+    /// Also lamps and skies that light: the ray leaves a matt surface by a mirror, or by glass that bends it.
     EmissionAndLamps,
 }
 
 impl CountedLight {
-    /// Returns what counts for a ray that continues from one of these.
-    pub fn after(self, kind: RayKind) -> Self {
-        match kind {
-            RayKind::Scattered => Self::Emission,
-            RayKind::Reflected if self == Self::Emission => Self::EmissionAndLamps,
+    /// Returns what counts for a ray that continues from one of these, unbent or not.
+    pub fn after(self, kind: RayKind, is_unbent: bool) -> Self {
+        match (kind, self) {
+            (RayKind::Scattered, _) => Self::Emission,
+            (_, Self::Emission) if !is_unbent => Self::EmissionAndLamps,
             _ => self,
         }
     }
