@@ -41,6 +41,19 @@ fn the_program_alone_on_a_terminal_prints_its_help() {
 }
 
 #[test]
+fn the_first_help_fits_on_one_screen() {
+    let folder = folder();
+    let [help, short] = ["help", "-h"].map(|word| {
+        let (status, help, _) = outcome(tabray(&folder).arg(word));
+        assert_eq!(status, 0);
+        String::from_utf8(help).expect("text")
+    });
+    assert_eq!(help, short);
+    let longest = help.lines().map(|line| line.chars().count()).max();
+    assert!(help.lines().count() <= 24 && longest <= Some(80), "{help}");
+}
+
+#[test]
 fn a_scene_in_the_place_of_a_command_is_told_from_a_misspelt_command() {
     let folder = workplace();
     for word in ["a.ray", "no-such-scene.ray", "dir/b.TOML"] {
