@@ -148,9 +148,9 @@ fn a_drawing_that_no_image_lies_under_is_refused_with_its_cure() {
     fs::write(folder.path().join("b.ray"), BALLS).expect("a file");
     for (arguments, said) in [
         (&["a.ray", "-o", "a.exr", "--overlay", "a.svg"][..], "`a.svg` cannot contain `a.exr`"),
-        (&["a.ray", "-o", "a.png", "--overlay", "a.png"], "`a.png` cannot contain `a.png`"),
+        (&["a.ray", "-o", "a.png", "--overlay", "a.png"], "= help: `--overlay a.svg`"),
         (&["a.ray", "-o", "-", "--overlay", "a.svg"], "`a.svg` cannot contain `-`"),
-        (&["a.ray", "-o", "a.png", "--overlay", "a.ray"], "which the SVG would replace"),
+        (&["a.ray", "-o", "a.png", "--overlay", "a.ray"], "`a.ray` is the name of none"),
         (&["a.ray", "b.ray", "--overlay", "a.svg"], "`--overlay` takes one scene"),
         (&["a.ray", "--overlay", "a.svg", "--part", "1/2"], "cannot be used with"),
     ] {

@@ -51,8 +51,14 @@ impl Args {
         (scene, model): (&Path, &Model),
     ) -> Result<Option<Drawing>, Failure> {
         let Some(path) = &self.overlay else { return Ok(None) };
+        if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("svg")) {
+            let message =
+                format!("`--overlay` draws an SVG, and `{}` is the name of none", text::shown(path));
+            let named = path.with_extension("svg");
+            return Err(Failure::usage(message).help(format!("`--overlay {}`", text::shown(&named))));
+        }
         let is_png = matches!(format, Format::Png(_)) && full_range.is_none() && image != Path::new("-");
-        if !is_png || image == path {
+        if !is_png {
             let message = format!("`{}` cannot contain `{}`", text::shown(path), text::shown(image));
             return Err(Failure::usage(message)
                 .help("an SVG contains a PNG in a file: `-o figure.png --overlay figure.svg`"));
