@@ -145,7 +145,9 @@ type Test = (usize, Option<f64>);
 struct Searches(Vec<(Ray, Vec<Test>)>);
 
 impl TraceObserver for Searches {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         match (event, self.0.last_mut()) {

@@ -161,8 +161,6 @@ fn work(plan: &Plan, x: usize, y: usize) -> u64 {
 struct Work(u64);
 
 impl TraceObserver for Work {
-    const SEES: bool = false;
-
     fn count(&mut self, count: Count) {
         self.0 += match count {
             Count::Rays(RayKind::Primary | RayKind::Shadow, rays) => RAY * rays as u64,

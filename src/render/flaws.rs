@@ -87,8 +87,6 @@ impl Undecided {
 }
 
 impl TraceObserver for Flaws {
-    const SEES: bool = false;
-
     // Most counts compile to nothing.
     #[inline(always)]
     fn count(&mut self, count: Count) {

@@ -8,11 +8,11 @@ use tabray_world::material::Rgb;
 use tabray_world::scene::model::Object;
 
 /// An observer of rays being traced.
-///
-/// Plain rendering uses `()`, for which all of this compiles to nothing.
 pub trait TraceObserver {
-    /// Whether the observer sees each event. If so, rays are traced one by one, and no test is culled.
-    const SEES: bool;
+    /// Tells whether the observer sees each event. If so, rays are traced one by one, and no test is culled.
+    fn sees_events(&self) -> bool {
+        false
+    }
 
     /// Receives an event.
     fn see(&mut self, _event: Event) {}
@@ -21,44 +21,7 @@ pub trait TraceObserver {
     fn count(&mut self, _count: Count) {}
 }
 
-impl TraceObserver for () {
-    const SEES: bool = false;
-}
-
-/// An observer behind `dyn`. Such observers share two compiled tracers: one for those that see events, and one for
-/// those that do not.
-pub struct DynObserver<'o, const SEES: bool>(pub &'o mut dyn Receiver);
-
-/// The interface of a [`TraceObserver`] behind `dyn`.
-pub trait Receiver {
-    /// Receives an event.
-    fn see(&mut self, event: Event);
-
-    /// Receives a count of work done or saved.
-    fn count(&mut self, count: Count);
-}
-
-impl<W: TraceObserver> Receiver for W {
-    fn see(&mut self, event: Event) {
-        TraceObserver::see(self, event);
-    }
-
-    fn count(&mut self, count: Count) {
-        TraceObserver::count(self, count);
-    }
-}
-
-impl<const SEES: bool> TraceObserver for DynObserver<'_, SEES> {
-    const SEES: bool = SEES;
-
-    fn see(&mut self, event: Event) {
-        Receiver::see(self.0, event);
-    }
-
-    fn count(&mut self, count: Count) {
-        Receiver::count(self.0, count);
-    }
-}
+impl TraceObserver for () {}
 
 /// Work that was done or saved. Counts are of single rays, not of packets.
 #[derive(Clone, Debug, PartialEq)]

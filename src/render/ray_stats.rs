@@ -80,8 +80,6 @@ pub struct TestCounts {
 }
 
 impl TraceObserver for RayStats {
-    const SEES: bool = false;
-
     fn count(&mut self, count: Count) {
         match &count {
             &Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,

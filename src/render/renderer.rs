@@ -4,7 +4,6 @@ use crate::bytes::{to_bytes, to_bytes_with_alpha};
 use crate::flaws::Flaws;
 use crate::observer::TraceObserver;
 use crate::plan::Plan;
-use crate::ray_stats::RayStats;
 use crate::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::trace::{Scratch, Tracer};
 use rayon::ThreadPool;
@@ -72,7 +71,7 @@ impl Renderer {
     ///
     /// Each strip of tiles has a new observer, which is then passed to `watched`, on any thread and in no particular
     /// order.
-    pub fn bands<'r, W: ImageObserver>(
+    pub fn bands<'r, W: TraceObserver + Default>(
         &'r self,
         plan: &'r Plan,
         columns: Range<usize>,
@@ -97,7 +96,7 @@ impl Renderer {
 
     /// Renders the tiles of a band that are not rendered yet, until the overseer stops it. Observers are passed to
     /// `watched` as in [`bands`](Self::bands).
-    pub fn fill<W: ImageObserver>(
+    pub fn fill<W: TraceObserver + Default>(
         &self,
         plan: &Plan,
         band: &Band,
@@ -105,7 +104,7 @@ impl Renderer {
         watched: &(dyn Fn(W) + Sync),
     ) {
         self.fill_by(plan, band, overseer.row, &|scratch, tiles, sink| {
-            watched(W::trace(plan, self.cpu, scratch, tiles, overseer.stops, sink).0);
+            watched(trace::<W>(plan, self.cpu, scratch, tiles, overseer.stops, sink).0);
         });
     }
 
@@ -165,7 +164,7 @@ impl Renderer {
     /// the light and the alpha of each pixel, in rows from the top, each from the left, or `None` if the overseer stops it.
     /// Light is premultiplied; where the plan's camera has no alpha, it is 1.
     /// Observers are passed to `watched` as in [`bands`](Self::bands).
-    pub fn light<W: ImageObserver, T: Clone + Default + Send>(
+    pub fn light<W: TraceObserver + Default, T: Clone + Default + Send>(
         &self,
         plan: &Plan,
         [columns, rows]: [&Range<usize>; 2],
@@ -188,7 +187,7 @@ impl Renderer {
             let indices = (0..width.div_ceil(TILE)).collect();
             let tiles = StripTiles { columns, rows: &rows, indices };
             let mut scratch = Scratch::default();
-            let (observer, flow) = W::trace(plan, self.cpu, &mut scratch, &tiles, overseer.stops, &mut add);
+            let (observer, flow) = trace::<W>(plan, self.cpu, &mut scratch, &tiles, overseer.stops, &mut add);
             watched(observer);
             rows.for_each(|_| (overseer.row)());
             flow
@@ -199,7 +198,7 @@ impl Renderer {
 
     /// Renders a part of the image as [`light`](Self::light) does, with the values of files of full range: red, green
     /// and blue of each pixel, premultiplied and with alpha if the plan's camera has that.
-    pub fn colours<W: ImageObserver>(
+    pub fn colours<W: TraceObserver + Default>(
         &self,
         plan: &Plan,
         part: [&Range<usize>; 2],
@@ -267,21 +266,7 @@ pub struct StripTiles<'s> {
 /// each, with alpha if there is any.
 type TileSink<'s> = dyn FnMut(usize, &[[usize; 2]], View, &[f64]) + 's;
 
-/// An observer with which images are rendered. The code that traces rays for it is compiled in this crate, and not
-/// again in each crate that renders.
-pub trait ImageObserver: TraceObserver + Default {
-    /// Computes the colours of tiles with a new observer. Returns the observer, and `Break` if `stops` returned true.
-    fn trace(
-        plan: &Plan,
-        cpu: Cpu,
-        scratch: &mut Scratch,
-        tiles: &StripTiles,
-        stops: &dyn Fn() -> bool,
-        sink: &mut TileSink,
-    ) -> (Self, ControlFlow<()>);
-}
-
-/// Implements [`ImageObserver::trace`].
+/// Computes the colours of tiles with a new observer. Returns the observer, and `Break` if `stops` returned true.
 fn trace<W: TraceObserver + Default>(
     plan: &Plan,
     cpu: Cpu,
@@ -316,22 +301,3 @@ fn trace<W: TraceObserver + Default>(
     }
     (observer, flow)
 }
-
-macro_rules! image_observers {
-    ($($Observer:ty),*) => {$(
-        impl ImageObserver for $Observer {
-            fn trace(
-                plan: &Plan,
-                cpu: Cpu,
-                scratch: &mut Scratch,
-                tiles: &StripTiles,
-                stops: &dyn Fn() -> bool,
-                sink: &mut TileSink,
-            ) -> (Self, ControlFlow<()>) {
-                trace(plan, cpu, scratch, tiles, stops, sink)
-            }
-        }
-    )*};
-}
-
-image_observers!(Flaws, RayStats);

@@ -93,7 +93,9 @@ impl<W: Write> Printer<'_, W> {
 }
 
 impl<W: Write> TraceObserver for Printer<'_, W> {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         match event {

@@ -19,7 +19,9 @@ struct ReachedEntities {
 }
 
 impl TraceObserver for ReachedEntities {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         match event {

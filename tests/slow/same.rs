@@ -79,7 +79,9 @@ fn certain_pixels_depend_on_neither_threads_nor_instructions() {
 fn whoever_looks_on_sees_the_colours_of_the_picture() {
     struct Onlooker;
     impl TraceObserver for Onlooker {
-        const SEES: bool = true;
+        fn sees_events(&self) -> bool {
+            true
+        }
     }
     let thread = renderer_with(1).expect("a thread with room for deep reflections");
     let check = |name: &str, model: &Model| {

@@ -18,9 +18,10 @@ use std::thread::{self, Builder, Scope};
 use std::time::{Duration, Instant};
 use tabray_core::render::division::Grid;
 use tabray_core::render::flaws::Flaws;
+use tabray_core::render::observer::TraceObserver;
 use tabray_core::render::plan::Plan;
 use tabray_core::render::ray_stats::RayStats;
-use tabray_core::render::renderer::{ImageObserver, RenderCallbacks, Renderer};
+use tabray_core::render::renderer::{RenderCallbacks, Renderer};
 use tabray_core::render::tiles::{Band, TILE, with_alpha};
 use tabray_tools::pixels::take_tile;
 
@@ -153,7 +154,7 @@ impl TileRender<'_> {
     /// Renders as [`Renderer::fill`] does, until rendering has stopped for a moment: then threads may be left that are at
     /// work on tiles, which the band does not get any more. The scope ends when they are done, so that whoever does not
     /// want to wait ends the program before.
-    fn fill<'s, W: ImageObserver>(
+    fn fill<'s, W: TraceObserver + Default>(
         &'s self,
         scope: &'s Scope<'s, '_>,
         band: &mut Band,

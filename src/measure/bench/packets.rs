@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Duration;
 use tabray_core::geometry::ray::{MISS, Side};
 use tabray_core::geometry::ray_packet::{HitRecordMut, PACKET_SIZE, RayPacket};
-use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
+use tabray_core::render::observer::{Count, RayKind, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::tiles::{self, TILE};
 use tabray_core::render::trace::{self, Scratch, Tracer};
@@ -222,8 +222,6 @@ struct TestedObjects {
 }
 
 impl TraceObserver for TestedObjects {
-    const SEES: bool = false;
-
     fn count(&mut self, count: Count) {
         match (count, self.kind) {
             (Count::Rays(kind, _), _) => self.kind = Some(kind),
@@ -238,7 +236,7 @@ impl TestedObjects {
     /// Collects the objects of a tile, each once.
     fn of(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();
-        Tracer::new(plan, cpu, &mut Scratch::default(), &mut DynObserver::<false>(&mut tested)).pixels(tile);
+        Tracer::new(plan, cpu, &mut Scratch::default(), &mut tested).pixels(tile);
         for objects in [&mut tested.primary, &mut tested.shadow] {
             objects.sort_unstable();
             objects.dedup();

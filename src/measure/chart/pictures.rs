@@ -351,7 +351,9 @@ fn means(
 pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     struct Tests(usize);
     impl TraceObserver for Tests {
-        const SEES: bool = true;
+        fn sees_events(&self) -> bool {
+            true
+        }
 
         fn see(&mut self, event: Event) {
             if let Event::Tested(..) = event {

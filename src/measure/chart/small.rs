@@ -280,12 +280,7 @@ impl SmallPixel {
 
     /// Takes samples until each cell has this many in each image. Returns the sums of the rest, and those of the
     /// cells.
-    fn more(
-        &self,
-        count: u32,
-        camera: &Sensor,
-        tracer: &mut Tracer<Flaws>,
-    ) -> ([(Rgb, u32); 2], [Vec<Rgb>; 2]) {
+    fn more(&self, count: u32, camera: &Sensor, tracer: &mut Tracer) -> ([(Rgb, u32); 2], [Vec<Rgb>; 2]) {
         let middle = DVec2::new(self.at[0] as f64, self.at[1] as f64);
         let (mut rest, mut sums) = (self.rest, self.sums.clone());
         for (image, scramble) in SCRAMBLES.into_iter().enumerate() {

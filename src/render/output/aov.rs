@@ -184,7 +184,9 @@ impl Setting {
 struct Rays(u64);
 
 impl TraceObserver for Rays {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         if let Event::Search(_) = event {

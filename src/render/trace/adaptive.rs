@@ -20,7 +20,7 @@ use super::path_hash::PathHashes;
 use super::ray_group::RayGroup;
 use super::sampled;
 use crate::features::FEATURE_SAMPLES;
-use crate::observer::{Count, TraceObserver};
+use crate::observer::Count;
 use std::mem::take;
 use std::ops::Range;
 use tabray_world::display::Display;
@@ -60,7 +60,7 @@ fn most_error(adaptive: Adaptive, samples: u32) -> f64 {
     }
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Tells whether areas, a sun or a sky light the scene.
     fn is_light_spread_out(&self) -> bool {
         let lights = &self.model.lights;
@@ -143,8 +143,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 }
 
 /// A buffer that collects samples until they fill a packet.
-struct Rays<'r, 'm, 'w, W> {
-    tracer: &'r mut Tracer<'m, 'w, W>,
+struct Rays<'r, 'm, 'w> {
+    tracer: &'r mut Tracer<'m, 'w>,
     group: &'r mut RayGroup,
     seen: &'r mut VectorList,
     /// Whether nothing bounds the light that rays may return.
@@ -155,7 +155,7 @@ struct Rays<'r, 'm, 'w, W> {
     runs: Vec<SampleRun>,
 }
 
-impl<W: TraceObserver> Rays<'_, '_, '_, W> {
+impl Rays<'_, '_, '_> {
     /// Takes the probes at the corners of pixels and of those around them, and starts the pixels' estimates.
     fn begin(
         &mut self,

@@ -17,7 +17,6 @@ use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
 use super::tree::OpenRay;
-use crate::observer::TraceObserver;
 use crate::plan::Ways;
 use crate::plan::glow::Glow;
 use crate::plan::lamps::is_aimed_at;
@@ -66,7 +65,7 @@ pub(super) struct Aimed {
     density: f64,
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Tells whether rays that continue from rough surfaces meet anything by aim, too.
     pub(super) fn aims(&self) -> bool {
         !self.plan.lamps.is_empty() || self.plan.glow.is_some()

@@ -9,12 +9,11 @@ use super::arrays::VectorList;
 use super::context::Tracer;
 use super::ray_group::RayGroup;
 use super::tree::OpenRay;
-use crate::observer::TraceObserver;
 use tabray_world::material::Rgb;
 use tabray_world::rules::Rules;
 use tabray_world::simd::soa::View;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Notes how clear the rays of some lanes are, which hit nothing, and takes the background out of their colours as far
     /// as they are. Rays whose budget is used up end at a distance of 0, and count as opaque.
     pub(super) fn show_through(

@@ -7,7 +7,7 @@ use super::light;
 use super::ray_group::{HitRecord, RayGroup};
 use super::surface::Surface;
 use crate::limits::{KEPT_DEPTH, KEPT_PART, MAX_RAYS};
-use crate::observer::{Count, RayKind, TraceObserver};
+use crate::observer::{Count, RayKind};
 use crate::plan::CostlyObjects;
 use crate::plan::depth::Branch;
 use tabray_world::geometry::ray::Side;
@@ -15,7 +15,7 @@ use tabray_world::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use tabray_world::material::Rgb;
 use tabray_world::rules;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Starts primary rays with these ray budgets. They lack no light yet.
     pub(super) fn begin_missing(&mut self, budgets: &[u32]) {
         resized(&mut self.scratch.missing, budgets.len());
@@ -127,7 +127,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 /// them.
 const UNCOUNTED: u32 = 16;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Charges some of a packet's rays for their searches in costly shapes.
     ///
     /// All costly shapes of the scene count, even those that lie behind a ray's hit or are not needed for the image:

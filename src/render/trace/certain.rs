@@ -2,7 +2,7 @@
 
 use super::context::{PrimaryScratch, Tracer};
 use crate::footprint::{PixelProver, Proof};
-use crate::observer::{Count, TraceObserver};
+use crate::observer::Count;
 use crate::plan::Plan;
 use tabray_world::material::Rgb;
 use tabray_world::sensor::Adaptive;
@@ -24,7 +24,7 @@ pub(super) fn is_certified(plan: &Plan, proof: &Proof) -> bool {
     proof.is_within(limit(plan.camera.adaptive), &plan.camera.display())
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Computes the colours of pixels, given by column and row: colours that are certain within the limit are taken as
     /// proven, and the others are sampled.
     pub(super) fn certain_pixels(

@@ -5,7 +5,7 @@ use super::context::{Tracer, UndecidedRay};
 use super::exact::{Located, RoundedRay, certain_order, exact, is_before, is_unclear, located};
 use super::ray_group::{HitRecord, RayGroup};
 use crate::frusta::{self, PART};
-use crate::observer::{Count, DropReason, Event, Hit, TraceObserver};
+use crate::observer::{Count, DropReason, Event, Hit};
 use glam::DVec2;
 use std::cmp::Ordering;
 use std::mem::take;
@@ -16,7 +16,7 @@ use tabray_world::geometry::ray_packet::{HitRecordMut, RayPacket};
 use tabray_world::simd::cpu::kernels;
 use tabray_world::simd::soa::{LANES, Vectors};
 
-impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
+impl<'m> Tracer<'m, '_> {
     /// Finds each ray's closest hit, before `t_max` where it is given, in world units. A ray whose budget is used up
     /// hits nothing.
     pub(super) fn closest(&mut self, group: &mut RayGroup, t_max: Option<&[f64]>, hits: &mut HitRecord) {
@@ -27,7 +27,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         let mut ray_budget = take(&mut group.ray_budget);
         self.charge_searches(group.rays(), group.left(), 0..group.len, &mut ray_budget);
         group.ray_budget = ray_budget;
-        if W::SEES {
+        if self.sees_events {
             if is_over {
                 self.observer.see(Event::Dropped(DropReason::TooMany));
                 return;
@@ -184,8 +184,8 @@ kernels! {
 }
 
 /// The search for the closest hits of a packet.
-struct ClosestHitSearch<'s, 'm, 'w, W> {
-    tracer: &'s mut Tracer<'m, 'w, W>,
+struct ClosestHitSearch<'s, 'm, 'w> {
+    tracer: &'s mut Tracer<'m, 'w>,
     group: &'s RayGroup,
     hits: &'s mut HitRecord,
     /// The lanes of the current sub-packets.
@@ -201,7 +201,7 @@ struct RepeatedRay {
     dir: Vectors<LANES>,
 }
 
-impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
+impl ClosestHitSearch<'_, '_, '_> {
     /// Tests all objects. `ends` is scratch space.
     fn run(mut self, stack: &mut Stack, ends: &mut Vec<f64>) {
         let plan = self.tracer.plan;
@@ -311,7 +311,7 @@ impl<W: TraceObserver> ClosestHitSearch<'_, '_, '_, W> {
     }
 }
 
-impl<W: TraceObserver> PacketVisitor for ClosestHitSearch<'_, '_, '_, W> {
+impl PacketVisitor for ClosestHitSearch<'_, '_, '_> {
     fn test(&mut self, index: usize, lanes: Range<usize>, t_max: &mut [f64]) {
         if self.tracer.may_meet(self.group.left(), index) {
             self.part = lanes.clone();

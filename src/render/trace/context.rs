@@ -30,7 +30,7 @@ use tabray_world::simd::cpu::Cpu;
 const DEEP: usize = 24;
 
 /// Traces packets of rays through a plan.
-pub struct Tracer<'m, 'w, W> {
+pub struct Tracer<'m, 'w> {
     pub(super) model: &'m Model,
     pub(super) plan: &'m Plan<'m>,
     pub(super) cpu: Cpu,
@@ -41,12 +41,19 @@ pub struct Tracer<'m, 'w, W> {
     /// The light that counts where the rays of the current packet end.
     pub(super) counted: CountedLight,
     pub(super) scratch: &'w mut Scratch,
-    pub(super) observer: &'w mut W,
+    pub(super) observer: &'w mut dyn TraceObserver,
+    /// Whether the observer sees each event.
+    pub(super) sees_events: bool,
 }
 
-impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
+impl<'m, 'w> Tracer<'m, 'w> {
     /// Makes a tracer of a plan, which reports to an observer.
-    pub fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, observer: &'w mut W) -> Self {
+    pub fn new(
+        plan: &'m Plan,
+        cpu: Cpu,
+        scratch: &'w mut Scratch,
+        observer: &'w mut dyn TraceObserver,
+    ) -> Self {
         Self {
             model: plan.model,
             plan,
@@ -55,6 +62,7 @@ impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
             depth: 0,
             counted: CountedLight::All,
             scratch,
+            sees_events: observer.sees_events(),
             observer,
         }
     }

@@ -7,7 +7,7 @@ use super::light::{self, Colours, LitPoints};
 use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
-use crate::observer::{Event, LightOutcome, TraceObserver};
+use crate::observer::{Event, LightOutcome};
 use crate::plan::ShutOut;
 use glam::{DVec2, DVec3};
 use tabray_world::emitter::{Emitter, LightSample};
@@ -19,10 +19,10 @@ use tabray_world::packets::light::{AnyLit, LightSamples, ShadingPoints};
 use tabray_world::rules::{Falloff, Rules};
 use tabray_world::scene::model::Object;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Adds the contributions of all lights.
     pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
-        if W::SEES {
+        if self.sees_events {
             for ShutOut { light, object } in &self.plan.shut_out {
                 self.observer.see(Event::Light(*light, LightOutcome::Blocked(*object)));
             }
@@ -42,7 +42,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let scatters = is_matt || material.shininess != 0.0 && glances;
         let ray_budget = group.ray_budget[0];
         // Where nothing is scattered, lights make no difference, but they are still reported to an observer.
-        if scatters || W::SEES {
+        if scatters || self.sees_events {
             let around = aabb::around(cpu, points);
             for index in &self.plan.needs.lights {
                 self.add_lamp(*index, group, surface, &around, &mut lighting, colours);
@@ -107,7 +107,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
         }
         if !faced.any_shines {
-            if W::SEES {
+            if self.sees_events {
                 self.observer.see(Event::Light(
                     index,
                     if faced.any_faces { LightOutcome::Aside } else { LightOutcome::Behind },
@@ -121,7 +121,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let uniform = light.uniform().filter(|_| !self.fades(light));
         let are_mirrored = light.emitter().is_none_or(|emitter| emitter.has_highlights());
         let mut tint = Rgb::ONE;
-        let passes = W::SEES || self.plan.has_glass;
+        let passes = self.sees_events || self.plan.has_glass;
         if passes {
             if let Some(sent) = uniform {
                 emissivity.fill(count, sent);
@@ -130,7 +130,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.scratch.unbent = self.plan.camera.bounces != 0 && !are_mirrored;
             let (blocker, passed) = self.pass(group, surface, &paths, t_max, shines, emissivity);
             self.scratch.unbent = false;
-            if W::SEES
+            if self.sees_events
                 && let Some(blocker) = blocker
             {
                 self.observer.see(Event::Light(index, LightOutcome::Blocked(blocker)));
@@ -161,7 +161,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let (is_shiny, has_tints) = (shininess != 0.0, uniform.is_some());
             self.scratch.path_hashes.see_light(&group.camera[..group.len], index, &lit, is_shiny, has_tints);
         }
-        if W::SEES {
+        if self.sees_events {
             let mut alone = VectorList::default();
             alone.fill(count, Rgb::ZERO);
             light::add_glints(cpu, &lit, shininess, alone.resized(count));

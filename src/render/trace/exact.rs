@@ -3,7 +3,7 @@
 
 use super::context::{Tracer, UndecidedPixel, UndecidedRay};
 use super::ray_group::{HitRecord, RayGroup};
-use crate::observer::{Count, TraceObserver};
+use crate::observer::Count;
 use f256::f256;
 use std::cmp::Ordering;
 use std::mem::take;
@@ -210,7 +210,7 @@ pub(super) fn certain_order(one: &AnyShape, other: &AnyShape, sight: &Sight) -> 
     })
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Notes the pixels of a packet with undecided hits no farther than their rays' certain hits. For a shape without
     /// an equation, nothing is decided, and its own distance counts.
     #[cold]

@@ -9,7 +9,6 @@ use super::context::Tracer;
 use super::draws::RIM_POINTS;
 use super::ray_group::RayGroup;
 use super::surface::{Surface, crossing, facing};
-use crate::observer::TraceObserver;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use tabray_world::directions::facet;
@@ -20,7 +19,7 @@ use tabray_world::material::Rgb;
 /// The number that chooses the facets of probes: half of the disc of facets lies nearer to the middle.
 const PROBED: f64 = 0.5;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Bends the normals at points of a surface to those of facets, which the samples of the primary rays draw. Where
     /// pixels have one sample, the surface is smooth.
     pub(super) fn draw_facets(&mut self, group: &RayGroup, surface: &mut Surface, roughness: f64) {

@@ -7,7 +7,7 @@ use super::scatter::CountedLight;
 use super::tree::{Budget, End, Ends, OpenRay, Tree};
 use super::wave::{TreeScratch, Wave};
 use crate::limits::MAX_RAYS;
-use crate::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
+use crate::observer::{Count, Event, RayKind, RayPurpose};
 use crate::plan::depth::Depth;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -23,7 +23,7 @@ const TOGETHER: usize = 64;
 /// The minimum weight of rays whose hits are recorded to tell the samples of a pixel apart.
 const HEAVY: f64 = 1.0 / 16.0;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Computes the colours that primary rays return under the free rules.
     pub(super) fn grow(&mut self, depth: &Depth, group: &mut RayGroup, colours: &mut VectorList) {
         let (len, ends) = (group.len, Ends::of(&self.plan.camera));
@@ -75,7 +75,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             for (tree, lane) in scratch.trees.iter().zip(lanes) {
                 let (End { colour, apart }, lane) = (tree.end(&ends), usize::from(*lane));
                 colours.set(lane, colour);
-                if W::SEES
+                if self.sees_events
                     && let Some(reason) = tree.drops()
                 {
                     self.observer.see(Event::Dropped(reason));
@@ -105,7 +105,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         order.sort_by_key(|place| kind(*place));
         let kinds: Vec<_> = order.iter().map(|place| kind(*place)).collect();
         // An observer sees one ray after the other.
-        let together = if W::SEES { 1 } else { PACKET_SIZE };
+        let together = if self.sees_events { 1 } else { PACKET_SIZE };
         self.depth += 1;
         let mut start = 0;
         while let Some(kind) = kinds.get(start).copied() {
@@ -139,7 +139,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         for kind in [RayKind::Reflected, RayKind::Transmitted, RayKind::Scattered] {
             self.observer.count(Count::Rays(kind, of_kind(kind)));
         }
-        if W::SEES {
+        if self.sees_events {
             let OpenRay { kind, weight, .. } = wave[places[0] as usize];
             self.observer.see(Event::Begin(match kind {
                 RayKind::Transmitted => RayPurpose::Transmitted { tint: weight, kept: 1.0 },

@@ -4,13 +4,12 @@ use super::context::Tracer;
 use super::draws::{DrawnLight, LightDraws, Numbers};
 use super::ray_group::RayGroup;
 use super::surface::Surface;
-use crate::observer::TraceObserver;
 use glam::{DVec2, DVec3};
 use tabray_world::packets::light::PacketLight;
 use tabray_world::simd::cpu::kernels;
 use tabray_world::simd::soa::View;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Returns two numbers from 0 to 1 for each ray of a packet, by which the primary ray's sample chooses a point of
     /// an area of light; `None` where pixels have one sample.
     pub(super) fn draw<'d>(
@@ -18,7 +17,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         index: usize,
         group: &RayGroup,
         draws: &'d mut LightDraws,
-    ) -> Option<impl Fn(usize) -> DVec2 + use<'d, W>> {
+    ) -> Option<impl Fn(usize) -> DVec2 + use<'d>> {
         let are_probes = self.scratch.are_probes;
         let [x, y, _] = self.drawn(DrawnLight { index, is_ball: false }, group, draws)?;
         Some(move |lane: usize| {

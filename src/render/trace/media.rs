@@ -8,12 +8,11 @@ use super::arrays::VectorList;
 use super::context::Tracer;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
-use crate::observer::TraceObserver;
 use tabray_world::geometry::ray::Side;
 use tabray_world::interface::Medium;
 use tabray_world::material::Rgb;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Computes the fractions of light that pass from the points of a surface to the starts of a packet's rays.
     #[inline]
     pub(super) fn pass_media(&self, group: &RayGroup, distances: &[f64], surface: &mut Surface) {

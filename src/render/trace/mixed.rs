@@ -7,7 +7,6 @@ use super::context::Tracer;
 use super::exact::exact;
 use super::ray_group::RayGroup;
 use super::surface::{Errors, Surface};
-use crate::observer::TraceObserver;
 use std::ops::Range;
 use tabray_world::coincidence;
 use tabray_world::geometry::ray::{MISS, Side};
@@ -76,7 +75,7 @@ pub(super) fn list(hit_ids: &[u64], lanes: &[u8], objects: &mut Vec<u32>) {
     }
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Computes the distances, in world units, at which the rays of a group hit their objects. Each lies between
     /// `near` and `far`.
     pub(super) fn refine_mixed(

@@ -38,7 +38,7 @@ pub use context::{Scratch, Tracer};
 pub use exact::primary_distance;
 
 use crate::flaws::Flaws;
-use crate::observer::{Count, DynObserver, Event, Hit, RayKind, RayPurpose, TraceObserver};
+use crate::observer::{Count, Event, Hit, RayKind, RayPurpose, TraceObserver};
 use crate::plan::Plan;
 use arrays::{VectorList, gather};
 use context::{HitScratch, PrimaryScratch};
@@ -68,7 +68,7 @@ pub fn within_budgets(
     plan: &Plan,
     pixels: &[[usize; 2]],
     budgets: &[u32],
-    observer: &mut impl TraceObserver,
+    observer: &mut dyn TraceObserver,
 ) -> Vec<(Rgb, f64)> {
     let (mut scratch, mut group, mut colours) =
         (Scratch::default(), RayGroup::default(), VectorList::default());
@@ -84,7 +84,7 @@ pub fn within_budgets(
 }
 
 /// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
-pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
+pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut dyn TraceObserver) -> Rgb {
     let proof = certain::proof(plan, x, y);
     if let Some(proof) = &proof
         && certain::is_certified(plan, proof)
@@ -151,21 +151,21 @@ pub fn colour(plan: &Plan, sight: &Sight, sample: Option<Sample>) -> Rgb {
 }
 
 /// Computes the colour that a primary ray returns as [`colour`] does, and reports each step to `observer`.
-pub fn observe_colour<W: TraceObserver>(
+pub fn observe_colour(
     plan: &Plan,
     sight: &Sight,
     sample: Option<Sample>,
-    observer: &mut W,
+    observer: &mut dyn TraceObserver,
 ) -> Rgb {
     SingleRays::default().observed(plan, sight, (sample, None), observer).0
 }
 
 /// Computes the colours that primary rays without samples return as [`colour`] does, one after the other, and reports
 /// each step to `observer`.
-pub fn observe_colours<W: TraceObserver>(
+pub fn observe_colours(
     plan: &Plan,
     sights: impl Iterator<Item = Sight>,
-    observer: &mut W,
+    observer: &mut dyn TraceObserver,
 ) -> Vec<Rgb> {
     let mut rays = SingleRays::default();
     sights.map(|sight| rays.observed(plan, &sight, (None, None), observer).0).collect()
@@ -182,26 +182,12 @@ struct SingleRays {
 impl SingleRays {
     /// Computes a colour, with the sample of its ray and with the usual ray budget or this one, and a bound on the
     /// light that it lacks.
-    fn observed<W: TraceObserver>(
-        &mut self,
-        plan: &Plan,
-        sight: &Sight,
-        ray: (Option<Sample>, Option<u32>),
-        observer: &mut W,
-    ) -> (Rgb, f64) {
-        if W::SEES {
-            self.traced(plan, sight, ray, &mut DynObserver::<true>(observer))
-        } else {
-            self.traced(plan, sight, ray, &mut DynObserver::<false>(observer))
-        }
-    }
-
-    fn traced(
+    fn observed(
         &mut self,
         plan: &Plan,
         sight: &Sight,
         (sample, budget): (Option<Sample>, Option<u32>),
-        observer: &mut impl TraceObserver,
+        observer: &mut dyn TraceObserver,
     ) -> (Rgb, f64) {
         let Self { scratch, group, colours } = self;
         match sample {
@@ -263,7 +249,7 @@ pub fn first_hits<'m>(plan: &Plan<'m>, sights: &[Sight], decides: bool) -> Vec<O
     found
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Computes the colours of pixels, given by column and row from the bottom. Up to [`PACKET_SIZE`] rays are traced
     /// together.
     pub fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
@@ -418,7 +404,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if self.plan.camera.alpha {
             self.scratch.clear.resize(group.len, 0.0);
         }
-        if W::SEES {
+        if self.sees_events {
             self.observer.see(Event::Begin(RayPurpose::Primary));
         }
         let plan = self.plan;

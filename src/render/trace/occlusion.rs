@@ -5,7 +5,7 @@ use super::context::{ShadowScratch, Tracer};
 use super::exact::{RoundedRay, exact};
 use super::ray_group::RayGroup;
 use super::surface::Surface;
-use crate::observer::{Count, RayKind, TraceObserver};
+use crate::observer::{Count, RayKind};
 use std::mem::take;
 use std::ops::Range;
 use tabray_world::geometry::aabb::Aabb;
@@ -54,7 +54,7 @@ impl ShadowRays<'_> {
     }
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Marks the rays that an object blocks before their ends. The rays go from points in the box `from` to points in
     /// the box `to`.
     pub(super) fn occlude(&mut self, shadow_rays: &ShadowRays, from: &Aabb, to: &Aabb, blocked: &mut [u64]) {
@@ -70,8 +70,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 }
 
 /// The search for objects that block the rays of a packet.
-struct Occlusion<'s, 'm, 'w, W> {
-    tracer: &'s mut Tracer<'m, 'w, W>,
+struct Occlusion<'s, 'm, 'w> {
+    tracer: &'s mut Tracer<'m, 'w>,
     shadow_rays: &'s ShadowRays<'s>,
     /// The lanes of the current sub-packet.
     part: Range<usize>,
@@ -81,7 +81,7 @@ struct Occlusion<'s, 'm, 'w, W> {
     doubt: &'s mut [u64],
 }
 
-impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
+impl Occlusion<'_, '_, '_> {
     /// Tests all objects. `ends` is scratch space.
     fn run(mut self, stack: &mut Stack, ends: &mut Vec<f64>) {
         let plan = self.tracer.plan;
@@ -186,7 +186,7 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
     }
 }
 
-impl<W: TraceObserver> PacketVisitor for Occlusion<'_, '_, '_, W> {
+impl PacketVisitor for Occlusion<'_, '_, '_> {
     fn test(&mut self, index: usize, lanes: Range<usize>, t_max: &mut [f64]) {
         if self.tracer.may_meet(self.left(), index) {
             self.part = lanes.clone();
@@ -219,7 +219,7 @@ pub(super) struct LightPaths<'w> {
 /// The mark in `blocked` of a shadow ray that is not cast. Such a ray is not blocked.
 const NOT_CAST: u64 = 2;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Returns how far before the light shadow rays end, as a fraction of the sizes at [`ShadingPoints::slack`]: a
     /// surface on which the light lies must not block it, however the distances are rounded.
     ///

@@ -7,7 +7,6 @@
 
 use super::context::{PrimaryScratch, Scratch, Tracer};
 use crate::limits::MAX_RAYS;
-use crate::observer::TraceObserver;
 use crate::plan::Plan;
 use crate::tiles::TILE;
 use tabray_world::geometry::ray_packet::PACKET_SIZE;
@@ -25,7 +24,7 @@ pub(super) fn is_unbounded(plan: &Plan) -> bool {
 /// samples do not take too long, and enough that a packet takes hardly longer than a part of a larger one.
 const SINGLY: usize = 64;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Returns the number of pixels whose rays are traced together: those of a packet, those of several tiles where
     /// pixels differ in their numbers of samples, or `SINGLY` where samples are traced one by one.
     pub fn pixels_together(&self) -> usize {

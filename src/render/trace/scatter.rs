@@ -18,7 +18,7 @@ use super::draws::RIM_POINTS;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
 use super::tree::OpenRay;
-use crate::observer::{RayKind, TraceObserver};
+use crate::observer::RayKind;
 use glam::{DVec2, DVec3};
 use tabray_world::directions::by_cosine;
 use tabray_world::material::Rgb;
@@ -52,7 +52,7 @@ impl CountedLight {
     }
 }
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Adds what an object's surface gives by itself to its ambient light, or takes its place where that does not count.
     pub(super) fn emit(
         &self,

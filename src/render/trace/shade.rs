@@ -8,7 +8,7 @@ use super::mixed;
 use super::ray_group::RayGroup;
 use super::scatter::CountedLight;
 use super::surface::{Errors, SeenPatches, Surface};
-use crate::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose, TraceObserver};
+use crate::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose};
 use crate::plan::depth::{Branch, STEPS, step};
 use glam::DVec3;
 use std::mem::swap;
@@ -20,7 +20,7 @@ use tabray_world::packets::shader::SurfacePoints;
 use tabray_world::rules::{self, Rules};
 use tabray_world::scene::model::Object;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Computes the light that returns along the rays of a packet.
     pub(super) fn trace(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         let mut level = self.scratch.levels.pop().unwrap_or_default();
@@ -69,7 +69,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 group.charge(part, lanes);
             }
         }
-        if W::SEES {
+        if self.sees_events {
             self.observer.see(Event::Colour(colours.get(0)));
         }
         self.scratch.levels.push(level);
@@ -118,7 +118,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if !is_free {
             light::fade(cpu, &surface.travelled[..count], colours.resized(count));
         }
-        if W::SEES {
+        if self.sees_events {
             let (point, travelled) = (surface.points.get(0), surface.travelled[0]);
             let hit = Hit { index, object, distance: shading.distances[0], point };
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
@@ -226,7 +226,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         } else {
             Errors::NONE
         };
-        if W::SEES {
+        if self.sees_events {
             self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
     }
@@ -241,7 +241,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (count, surface) = (group.padded(), &mut shading.surface);
         let object = &self.model.objects[surface.index];
         let kept = 1.0 - object.material.transparency;
-        if W::SEES {
+        if self.sees_events {
             let tint = surface.tint(object, 0);
             self.observer.see(Event::Begin(RayPurpose::Transmitted { tint, kept }));
         }
@@ -278,7 +278,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         colours: &mut VectorList,
     ) {
         let ShadingScratch { surface, continue_mask, dir, .. } = shading;
-        if W::SEES {
+        if self.sees_events {
             let specular = match surface.look {
                 Some(look) => look.specular,
                 None => surface.specular.get(0),
@@ -327,7 +327,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
         let is_through = |lane: usize| crossings[lane].onward.is_some();
         if (0..group.len).any(is_through) {
-            if W::SEES {
+            if self.sees_events {
                 self.observer.see(Event::Begin(RayPurpose::Transmitted { tint: tints[0], kept }));
             }
             surface.flip_sides(count);
@@ -361,7 +361,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             if !(0..group.len).any(is_its) {
                 continue;
             }
-            if W::SEES {
+            if self.sees_events {
                 let specular = crossings[0].reflected;
                 self.observer.see(Event::Begin(RayPurpose::Reflected { specular }));
             }
@@ -409,7 +409,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         if lanes.len() < group.len {
             self.end_far(group, surface, continue_mask, kind, &branch);
         }
-        if W::SEES && lanes.is_empty() {
+        if self.sees_events && lanes.is_empty() {
             let is_far = rules::path_left(surface.travelled[0]) < 0.0;
             self.observer.see(Event::Dropped(if is_far { DropReason::TooFar } else { DropReason::TooFaint }));
             self.observer.see(Event::Colour(DVec3::ZERO));

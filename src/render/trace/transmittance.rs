@@ -5,11 +5,11 @@ use super::context::{Tracer, Transmittance};
 use super::occlusion::LightPaths;
 use super::ray_group::RayGroup;
 use super::surface::Surface;
-use crate::observer::{Count, Event, RayKind, RayPurpose, TraceObserver};
+use crate::observer::{Count, Event, RayKind, RayPurpose};
 use tabray_world::geometry::ray::{Ray, Side};
 use tabray_world::material::Rgb;
 
-impl<W: TraceObserver> Tracer<'_, '_, W> {
+impl Tracer<'_, '_> {
     /// Multiplies the light on some points by the fraction that passes through the glass on the way, and clears
     /// `shines` where an opaque object blocks it. Returns, for the first point, the index of the opaque object that
     /// blocks the light, if any, and the fraction of each channel that passes.
@@ -47,7 +47,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     fn walk(&mut self, transmittance: &mut Transmittance) {
         let Transmittance { group, t_max, tint, blocker, hits, parts, .. } = transmittance;
         self.observer.count(Count::Rays(RayKind::Shadow, group.len));
-        if W::SEES {
+        if self.sees_events {
             self.observer.see(Event::Begin(RayPurpose::Shadow { distance: t_max[0] }));
         }
         self.closest(group, Some(t_max), hits);

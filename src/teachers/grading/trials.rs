@@ -337,7 +337,9 @@ struct Listener {
 }
 
 impl TraceObserver for Listener {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         match event {

@@ -97,7 +97,9 @@ impl<'p> Survey<'p> {
 }
 
 impl TraceObserver for Survey<'_> {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         match event {

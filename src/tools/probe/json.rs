@@ -159,7 +159,9 @@ impl<'m> Listener<'m> {
 }
 
 impl TraceObserver for Listener<'_> {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         match event {

@@ -90,7 +90,9 @@ struct Search {
 }
 
 impl<W: Write> TraceObserver for Probe<'_, W> {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, event: Event) {
         match event {

@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 use tabray_core::geometry::ray_packet::PACKET_SIZE;
 use tabray_core::parallel;
 use tabray_core::render::flaws::Flaws;
-use tabray_core::render::observer::{Count, DynObserver, RayKind, TraceObserver};
+use tabray_core::render::observer::{Count, RayKind, TraceObserver};
 use tabray_core::render::plan::Plan;
 use tabray_core::render::renderer::Renderer;
 use tabray_core::render::tiles::TOGETHER;
@@ -56,8 +56,6 @@ struct Counted {
 }
 
 impl TraceObserver for Counted {
-    const SEES: bool = false;
-
     fn count(&mut self, count: Count) {
         match count {
             Count::Rays(kind, rays) => {
@@ -97,9 +95,8 @@ pub fn groups(threads: &Renderer, plan: &Plan, pixels: &[impl AsRef<[[usize; 2]]
 
 fn group(plan: &Plan, pixels: &[[usize; 2]], scratch: &mut Scratch) -> Group {
     let mut counted = Counted::default();
-    let mut observer = DynObserver::<false>(&mut counted);
     let start = clock::now();
-    let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut observer);
+    let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut counted);
     let view = tracer.pixels(pixels);
     let seconds = (clock::now() - start).as_secs_f64();
     let colours = (0..pixels.len()).map(|pixel| view.get(pixel)).collect();

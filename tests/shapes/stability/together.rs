@@ -275,7 +275,9 @@ fn the_first_of_floor_and_wall_is_seen_without_dots_where_they_meet() {
 struct Onlooker;
 
 impl TraceObserver for Onlooker {
-    const SEES: bool = true;
+    fn sees_events(&self) -> bool {
+        true
+    }
 
     fn see(&mut self, _event: Event) {}
 }
