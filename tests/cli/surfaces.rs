@@ -84,7 +84,10 @@ fn a_mesh_needs_no_camera_and_tells_what_it_takes() {
     let (status, _, err) = outcome(tabray(&folder).args(args));
     assert_eq!(status, 0, "{err}");
     let lines: Vec<_> = err.lines().collect();
-    assert!(lines[0].starts_with("about ") && lines[0].ends_with(" triangles are to be made"), "{err}");
+    assert!(
+        lines[0].starts_with("about ") && lines[0].ends_with(" triangles are to be made, and then merged"),
+        "{err}"
+    );
     assert!(lines[1].starts_with("{\"progress\":{\"done\":"), "{err}");
 }
 

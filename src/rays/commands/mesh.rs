@@ -91,7 +91,10 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let progress = OnceLock::new();
     let tell = |event| match event {
         Event::Expected { triangles, steps } => {
-            messages::note(&format!("about {} triangles are to be made", rounded(triangles)));
+            messages::note(&format!(
+                "about {} triangles are to be made, and then merged",
+                rounded(triangles)
+            ));
             progress.get_or_init(|| Progress::new(steps));
         }
         Event::Done(steps) => progress.get().into_iter().for_each(|progress| progress.advance(steps)),

@@ -7,12 +7,15 @@
 //! them, triangles separate the corners inside from those outside. Whatever the corners are, these triangles form
 //! closed two-manifolds. Their vertices are moved along the cells' edges onto the surface. Proofs about the result
 //! hold wherever they are. Where they fail, cells are halved again, until they are smaller than the error, unless
-//! all that fails is how parts are joined at places that smaller cells would not untangle.
+//! all that fails is how parts are joined at places that smaller cells would not untangle. Half of the error is for
+//! these triangles. The other half is for merging them to fewer, except near the cells where only the whole suffices.
 
 mod body;
 mod cells;
 mod closed;
+mod crossing;
 mod file;
+mod merge;
 mod proof;
 #[cfg(test)]
 mod tests;
@@ -24,6 +27,7 @@ pub use file::Format;
 
 use cells::Cells;
 use glam::DVec3;
+use merge::{ROUNDS, merged};
 use triangles::Triangles;
 
 /// The least number of times that the cube is halved: a body is not missed between corners far apart.
@@ -38,7 +42,7 @@ const PILOT: u32 = 5;
 /// The maximum number of cells that the surface may cross, and the approximate number of bytes that each takes with
 /// its triangles.
 const MAX_CELLS: usize = 1 << 22;
-const CELL: u64 = 400;
+const CELL: u64 = 700;
 
 /// The reason why there is no mesh.
 #[derive(Debug, PartialEq)]
@@ -58,7 +62,7 @@ pub enum NoMesh {
 pub enum Event {
     /// Most of the work is about to begin. A mesh that takes little time is made without this.
     Expected {
-        /// About how many triangles are to be made.
+        /// About how many triangles are to be made, before they are merged.
         triangles: usize,
         /// In about how many steps.
         steps: usize,
@@ -113,9 +117,10 @@ pub fn mesh(
             continue;
         }
         if may_end {
-            let far = proof::far(&cells, &triangles, body, (error, now == last), &done);
+            // The other half of the error is for merging.
+            let far = proof::far(&cells, &triangles, body, (error / 2.0, now == last), &done);
             if now == last || far.is_empty() {
-                return finished(&cells, triangles, far, tangled);
+                return finished(&cells, triangles, body, (error, far), tangled, &done);
             }
         }
         if now == PILOT {
@@ -129,24 +134,39 @@ pub fn mesh(
 fn expected(cells: &Cells, triangles: &Triangles, body: &Body<'_>, error: f64, last: u32) -> Event {
     let (most, gain) = (last - cells.halvings(), if body.has_edges { 1 } else { 2 });
     let suffices = |more: &u32| {
-        let error = error * f64::from(1 << (gain * more));
+        let error = error / 2.0 * f64::from(1 << (gain * more));
         proof::far(cells, triangles, body, (error, false), &|_| ()).is_empty()
     };
     let more = (1..most).find(suffices).unwrap_or(most);
     let (growth, count) = (4usize.pow(more), cells.list.len());
     // Each size of cells is four times the work of the size before: a third is added for all of them. A cell is halved,
-    // and examined four times.
-    let steps = (growth - 1) * 4 / 3 * (count / 4 + 4 * count + triangles.vertices.len());
+    // and examined four times. The last triangles are merged.
+    let vertices = triangles.vertices.len();
+    let steps =
+        (growth - 1) * 4 / 3 * (count / 4 + 4 * count + vertices) + growth * vertices * ROUNDS as usize;
     Event::Expected { triangles: growth * triangles.faces.len(), steps }
 }
 
-/// Returns a mesh whose proof is over, with the cells in which it fails.
+/// Returns a mesh with fewer triangles, and the cells in which its proof fails. It is known to be within half of the
+/// error, except in these cells.
 fn finished(
     cells: &Cells,
     triangles: Triangles,
-    far: Vec<usize>,
+    body: &Body<'_>,
+    (error, coarse): (f64, Vec<usize>),
     tangled: Option<Vec<usize>>,
+    done: Done<'_>,
 ) -> Result<SurfaceMesh, NoMesh> {
+    let far = if coarse.is_empty() {
+        coarse.clone()
+    } else {
+        proof::far(cells, &triangles, body, (error, true), done)
+    };
+    let mut fixed = vec![false; triangles.vertices.len()];
+    for face in proof::beside(cells, coarse).into_iter().flat_map(|cell| triangles.of_cells[cell].clone()) {
+        triangles.faces[face as usize].iter().for_each(|corner| fixed[*corner as usize] = true);
+    }
+    let triangles = merged(&triangles, fixed, error / 2.0, done);
     if !triangles.is_closed() {
         return Err(NoMesh::Open);
     }

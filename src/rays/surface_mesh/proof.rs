@@ -60,6 +60,16 @@ pub fn far(
     places(&|cell| off.binary_search(cell).is_ok() || is_bare(cell, slopes.as_deref()))
 }
 
+/// Returns cells and those around them that hold the triangles which their proofs may name.
+pub fn beside(cells: &Cells, mut of: Vec<usize>) -> Vec<usize> {
+    for _ in 0..=FARTHEST {
+        of = of.iter().flat_map(|cell| cells.around(*cell)).collect();
+        of.sort_unstable();
+        of.dedup();
+    }
+    of
+}
+
 /// Finds the cells in which the surface may turn by a right angle; `None` if gradients do not tell.
 pub fn tangled(cells: &Cells, body: &Body<'_>, done: Done) -> Option<Vec<usize>> {
     let half = cells.side() / 2.0;
@@ -258,7 +268,7 @@ fn is_covered(body: &Body<'_>, triangles: &[[DVec3; 3]], middle: DVec3, half: f6
 }
 
 /// Returns the square of the distance from a point to a triangle.
-fn distance_squared(point: DVec3, &[a, b, c]: &[DVec3; 3]) -> f64 {
+pub(super) fn distance_squared(point: DVec3, &[a, b, c]: &[DVec3; 3]) -> f64 {
     let to_edge = |from: DVec3, to: DVec3| {
         let (along, own) = (to - from, point - from);
         let t = (own.dot(along) / along.length_squared()).clamp(0.0, 1.0);

@@ -23,6 +23,7 @@ const STEPS: f64 = 8.0;
 const MANY: usize = 64;
 
 /// A vertex of a mesh.
+#[derive(Clone)]
 pub struct Vertex {
     pub at: DVec3,
     /// A bound on the distance from it to the surface; infinite where that is not known.
@@ -30,6 +31,7 @@ pub struct Vertex {
 }
 
 /// The triangles of a body's surface.
+#[derive(Clone)]
 pub struct Triangles {
     pub vertices: Vec<Vertex>,
     pub faces: Vec<[u32; 3]>,

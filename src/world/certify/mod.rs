@@ -27,9 +27,10 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::{Line, Sight};
 use f256::f256;
 use glam::DVec3;
+use tabray_exact::affine::Affine;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
-use tabray_exact::scalar::Scalar;
+use tabray_exact::scalar::{Scalar, per_axis};
 
 /// What is proven about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,14 +194,20 @@ pub(crate) fn first_hit_in(bounds: Option<Aabb>, line: &Line<Interval>) -> HitEn
 
 /// Tells whether a point lies inside of a closed surface, where the equation is below 0; `None` where the surface may
 /// pass through the box that extends `error` world units from the point along each axis.
-pub fn contains(shape: &impl Equation, at: DVec3, error: f64) -> Option<bool> {
+pub fn contains<E: Equation>(shape: &E, at: DVec3, error: f64) -> Option<bool> {
     let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
     let Line { origin, .. } = shape.to_local(Line { origin, dir: [Interval::constant(0.0); 3] });
     let [low, high] = shape.extent();
     if (0..3).any(|axis| origin[axis].high < low[axis] || origin[axis].low > high[axis]) {
         return Some(false);
     }
-    let value = shape.value(origin);
+    let mut value = shape.value(origin);
+    if value.has_zero() && !E::IS_QUADRATIC && error > 0.0 {
+        // Intervals are far too wide where terms cancel, as they do near a node.
+        let origin = per_axis(|axis| Affine::variable(axis, at[axis], error));
+        let line = shape.to_local(Line { origin, dir: [Affine::constant(0.0); 3] });
+        value = shape.value(line.origin).range();
+    }
     let is_inside = value.high < 0.0;
     // Where the box cuts off the inside, its faces are part of the surface.
     let is_cut =
