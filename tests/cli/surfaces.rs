@@ -95,8 +95,15 @@ fn a_mesh_needs_no_camera_and_tells_what_it_takes() {
 fn what_is_not_proven_of_how_a_mesh_is_connected_is_told_with_what_to_do() {
     let folder = folder();
     let scene = "material m { } box b { material m  center 0 0 0  size 1 1 1 }
-        heart h { material m  center 0 0 0  size 1 }";
+        heart h { material m  center 0 0 0  size 1 }
+        implicit whisker { material m  box -1 -1 -1 1 1 1  formula \"(x^2 + y^2 + z^2 - 0.2)*(x^2 + y^2)\" }";
     fs::write(folder.path().join("a.ray"), scene).expect("written");
+    let args = ["mesh", "a.ray", "whisker", "-o", "a.ply", "--error", "0.1"];
+    let (status, _, err) = outcome(tabray(&folder).args(args));
+    assert!(
+        status == 1 && err.contains(" cells, which a smaller `box` or a `clip` may leave out: "),
+        "{err}"
+    );
     for (name, said) in [
         ("b", "connected as the object is: look at it where parts nearly touch\n"),
         ("h", "as at a node or an edge; a smaller `--error` makes these places smaller\n"),

@@ -132,6 +132,16 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             "it was not checked whether the mesh is connected as the object is: look at it where parts nearly touch",
         ),
     }
+    if !made.singular.is_empty() {
+        messages::warning(
+            &format!(
+                "the surface may have {}, where its gradient is 0: {}",
+                count(made.singular.len(), "singular point"),
+                first(&made.singular, |at| point(*at))
+            ),
+            Some("a smaller `box`, or a `clip`, leaves them out"),
+        );
+    }
     if made.far.is_empty() {
         messages::note(&format!(
             "each point of the mesh is within {} of the surface, and each point of the surface of the mesh",
@@ -140,7 +150,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Failed(format!(
-        "the mesh is not proven to be within {} of the surface in {}: {}",
+        "the mesh is not proven to be within {} of the surface in {}, which a smaller `box` or a `clip` may leave out: {}",
         shortest(error),
         count(made.far.len(), "cell"),
         listed(&made.far)
@@ -153,14 +163,20 @@ fn rounded(number: usize) -> usize {
     number.div_ceil(unit) * unit
 }
 
+fn point(at: DVec3) -> String {
+    let signed = |number: f64| format!("{}{}", if number < 0.0 { "-" } else { "" }, short(number.abs()));
+    at.to_array().map(signed).join(" ")
+}
+
 /// Lists the first places.
 fn listed(places: &[[DVec3; 2]]) -> String {
-    let signed = |number: f64| format!("{}{}", if number < 0.0 { "-" } else { "" }, short(number.abs()));
-    let point = |at: DVec3| at.to_array().map(signed).join(" ");
-    let texts = places.iter().take(LISTED).map(|[low, high]| format!("{} to {}", point(*low), point(*high)));
-    let more =
-        if places.len() > LISTED { format!(", and {} more", places.len() - LISTED) } else { String::new() };
-    texts.collect::<Vec<_>>().join(", ") + &more
+    first(places, |[low, high]| format!("{} to {}", point(*low), point(*high)))
+}
+
+/// Lists the first things.
+fn first<T>(of: &[T], text: impl Fn(&T) -> String) -> String {
+    let more = if of.len() > LISTED { format!(", and {} more", of.len() - LISTED) } else { String::new() };
+    of.iter().take(LISTED).map(text).collect::<Vec<_>>().join(", ") + &more
 }
 
 fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {

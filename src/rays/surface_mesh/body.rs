@@ -21,6 +21,8 @@ pub struct Body<'m> {
     pub bounds: Aabb,
     /// Whether its surface has edges that gradients do not show: it is a solid, or is closed by the faces of its box.
     pub(super) has_edges: bool,
+    /// Whether it is made of faces, each with an equation of its own.
+    has_faces: bool,
     /// Whether the faces of its box close it.
     pub is_capped: bool,
 }
@@ -72,8 +74,8 @@ impl<'m> Body<'m> {
         }
         // Of a shape of faces, proofs know the equation of one.
         let has_faces = |proven: &dyn ProofMethods| HitProofs::<f64>::face_of(proven, 0).is_some();
-        let has_edges = is_solid || is_capped || shape.proven().is_none_or(has_faces);
-        Ok(Self { shape, bounds, has_edges, is_capped })
+        let has_faces = shape.proven().is_none_or(has_faces);
+        Ok(Self { shape, bounds, has_edges: is_solid || is_capped || has_faces, has_faces, is_capped })
     }
 
     /// Tells whether a cube lies inside or outside; `None` where the surface may pass through it.
@@ -114,6 +116,17 @@ impl<'m> Body<'m> {
     pub fn gradient_in(&self, middle: DVec3, half: f64) -> Option<[Interval; 3]> {
         let half = half + MARGIN * (middle.abs().max_element() + half);
         self.gradient(middle.to_array().map(|at| Interval { low: at - half, high: at + half }))
+    }
+
+    /// Tells whether a cube may have a point of the surface where the gradient is 0, as at a node. Of a solid, this is
+    /// asked of its first part.
+    pub fn may_be_singular(&self, middle: DVec3, half: f64) -> bool {
+        let Some(proven) = self.shape.proven().filter(|_| !self.has_faces) else { return false };
+        let at = middle.to_array().map(|at| Interval { low: at - half, high: at + half });
+        let gradient: [Interval; 3] = gradient(proven, at, 0);
+        gradient.iter().all(|of| of.is_bounded() && of.has_zero())
+            && HitProofs::<f64>::slope(proven, at.map(Dual::fixed), 0).value.has_zero()
+            && self.contains(middle, half).is_none()
     }
 
     /// Tells whether gradients at any two points of a cube are at less than a right angle: the surface in it is then

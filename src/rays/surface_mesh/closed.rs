@@ -12,6 +12,8 @@ pub struct SurfaceMesh {
     pub cell: f64,
     /// The places where it is not proven that the surface and the mesh are near each other: low and high corners.
     pub far: Vec<[DVec3; 2]>,
+    /// Points near which the surface may be singular.
+    pub singular: Vec<DVec3>,
     /// The places where the surface may have other parts than the mesh, or may be joined differently; `None` if not
     /// examined.
     pub tangled: Option<Vec<[DVec3; 2]>>,

@@ -174,7 +174,14 @@ fn finished(
     let Triangles { vertices, faces, .. } = triangles;
     let vertices = vertices.into_iter().map(|vertex| vertex.at).collect();
     let (far, tangled) = (places(far), tangled.map(places));
-    Ok(SurfaceMesh { vertices, faces, cell: cells.side(), far, tangled })
+    Ok(SurfaceMesh {
+        vertices,
+        faces,
+        cell: cells.side(),
+        far,
+        singular: proof::singular(cells, body),
+        tangled,
+    })
 }
 
 impl SurfaceMesh {

@@ -107,6 +107,32 @@ fn has_tangled_part(body: &Body<'_>, middle: DVec3, half: f64, halvings: u32) ->
             || eighths(middle, half).any(|middle| has_tangled_part(body, middle, half / 2.0, halvings - 1)))
 }
 
+/// The number of times that a cell is halved in search of a point where the gradient is 0.
+const SINGULAR: u32 = 8;
+
+/// Finds points near which the surface may be singular, in cells that are not beside each other.
+pub fn singular(cells: &Cells, body: &Body<'_>) -> Vec<DVec3> {
+    let found = parallel::map_ranges(cells.list.len(), MANY, &|range| {
+        let middles = range.map(|cell| cells.middle(cells.list[cell]));
+        middles.filter_map(|middle| singular_in(body, middle, cells.side() / 2.0, SINGULAR)).collect()
+    });
+    let mut apart: Vec<DVec3> = Vec::new();
+    for at in found {
+        if apart.iter().all(|other| other.distance(at) > 2.0 * cells.diagonal()) {
+            apart.push(at);
+        }
+    }
+    apart
+}
+
+fn singular_in(body: &Body<'_>, middle: DVec3, half: f64, halvings: u32) -> Option<DVec3> {
+    match body.may_be_singular(middle, half) {
+        true if halvings == 0 => Some(middle),
+        true => eighths(middle, half).find_map(|middle| singular_in(body, middle, half / 2.0, halvings - 1)),
+        false => None,
+    }
+}
+
 /// Returns the middles of the eight cubes that are half as large as a cube.
 fn eighths(middle: DVec3, half: f64) -> impl Iterator<Item = DVec3> {
     (0..8u32).map(move |part| {

@@ -162,6 +162,13 @@ fn a_surface_with_nodes_is_proven_with_few_triangles() {
     let made = meshed(&implicit("x^2 + y^2 + z^2 + 2*x*y*z - 1", 1.2), 0.1);
     assert!(made.far.is_empty(), "{} places", made.far.len());
     assert!(made.faces.len() < 5_000, "{}", made.faces.len());
+    let found = &made.singular;
+    assert!(found.len() == 4 && found.iter().all(|at| at.abs().max_element() < 1.01), "{found:?}");
+    assert!(
+        found.iter().all(|at| at.abs().min_element() > 0.99 && at.to_array().iter().product::<f64>() < 0.0)
+    );
+    let smooth = meshed(&implicit("x^2 + y^2 + z^2 + x*y*z - 1", 1.2), 0.1);
+    assert!(smooth.singular.is_empty(), "{:?}", smooth.singular);
 }
 
 #[test]
