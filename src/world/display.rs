@@ -280,7 +280,8 @@ impl Display {
                 (false, false) if self.transfer != Transfer::Linear => {
                     let code = |light: f64| self.transfer.encode((gain * light).clamp(0.0, 1.0));
                     let middle = self.transfer.decode(0.5 * (code(low) + code(high))) / gain;
-                    middle.clamp(low, high)
+                    // Not `clamp`, which refuses what is no number: overflows give it.
+                    middle.max(low).min(high)
                 }
                 (false, false) if below || above => 0.5 * (low.max(0.0) + high.min(1.0 / gain)),
                 _ => 0.5 * (low + high),
