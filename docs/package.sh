@@ -163,11 +163,12 @@ sbom() {
 rays() {
     local folder=tabray-$version-hard-rays scene name
     files
-    mkdir "$out/$folder"
+    # With what scenes include.
+    install -D -t "$out/$folder/parts" scenes/parts/studio.inc
     for scene in scenes/entities/{box,capsule,cylinder,disc,ellipsoid,lathe,polygon,prism,quadric,sphere,torus,triangle}.ray \
         scenes/models/{icosahedron.ply,knot.obj,slivers.obj}; do
         name=$(basename "${scene%.*}")
-        cp "$scene" "$out/$folder/"
+        install -D -t "$out/$folder/$(basename "$(dirname "$scene")")" "$scene"
         "$program" hard "$scene" -n 10000 -o "$out/$folder/$name-rays.csv"
         "$program" hits "$scene" "$out/$folder/$name-rays.csv" --tight -o "$out/$folder/$name-hits.csv" 2> /dev/null
     done

@@ -221,7 +221,7 @@ try {
   await step('ten scenes have the bytes of the program', async () => {
     const names = ['barth-6', 'clebsch', 'heart', 'goursat', 'gyroid', 'torus', 'kummer', 'superquadric']
     const texts = await Promise.all(names.map(surface))
-    for (const file of ['scenes/entities/revsurf.ray', 'scenes/entities/glass.ray', 'scenes/gallery/marbles.ray', 'scenes/light/shadow.ray']) {
+    for (const file of ['scenes/entities/revsurf.ray', 'scenes/heart/glass.ray', 'scenes/gallery/marbles.ray', 'scenes/light/shadow.ray']) {
       texts.push(readFileSync(join(sources, file), 'utf8').replace(/pixeldim +\d+ +\d+/, 'pixeldim 96 72'))
     }
     for (const [index, text] of texts.entries()) {
