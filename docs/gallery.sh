@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The pictures of docs/gallery.md, one for each type of object, shader, material, background and camera that it shows:
-# 320 x 240 pixels, 16 samples in each, and 256 through a lens and under a lamp with a size.
+# 192 x 144 pixels in 96 colours, for which it takes pngquant (apt-get install pngquant).
 #
 #     bash docs/gallery.sh
 #
@@ -12,11 +12,18 @@ if [ -z "${TABRAY:-}" ]; then
     cargo build --release --locked --quiet
     TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/release/tabray")
 fi
-for shape in implicit lathe box cylinder capsule disc polygon prism union intersection difference \
-    tiles rainbow checker image faces formula bumps glass metal plastic background sky environment \
-    look_at orthographic fisheye thin_lens; do
-    samples=16
-    case $shape in thin_lens | plastic) samples=256 ;; esac
-    "$TABRAY" render "scenes/entities/$shape.ray" --size 320x240 --samples "$samples" -o "docs/gallery/$shape.png"
-done
-"$TABRAY" render scenes/glass/bubbles.ray --size 320x240 --samples 16 -o docs/gallery/bubbles.png
+
+# draw SAMPLES SCENE...
+draw() {
+    local samples=$1 scene image
+    shift
+    for scene; do
+        image=docs/gallery/$(basename "$scene" .ray).png
+        "$TABRAY" render "$scene" --size 192x144 --samples "$samples" --force -o "$image"
+        pngquant --nofs --strip --force --output "$image" 96 "$image"
+    done
+}
+draw 64..256 scenes/entities/{lathe,box,cylinder,capsule,disc,polygon,prism,tiles,rainbow,checker,image,faces,formula}.ray \
+    scenes/entities/{bumps,metal,plastic,background,sky,environment,look_at,orthographic,fisheye,thin_lens}.ray
+# What takes long, and glass, where a pixel has a limited number of rays for all of its samples together.
+draw 64 scenes/entities/{implicit,union,intersection,difference,glass}.ray scenes/glass/bubbles.ray
