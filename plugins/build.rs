@@ -18,8 +18,15 @@ fn main() -> io::Result<()> {
             continue;
         }
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-        let registers =
-            fs::read_to_string(path.file_name().unwrap_or_default())?.contains("inventory::submit!");
+        let text = fs::read_to_string(path.file_name().unwrap_or_default())?;
+        let registers = text.contains("inventory::submit!");
+        // Compiling all of them again for their tests would take a minute.
+        if name != "build" && text.contains("#[test]") {
+            println!(
+                "cargo::warning={}: its tests do not run here: put them into a file of tests/",
+                path.display()
+            );
+        }
         if OWN.contains(&name) {
             if registers && name == "lib" {
                 println!(

@@ -41,6 +41,12 @@ const MAX_OPEN: usize = 24;
 /// The number of jumps and poles in a piece, on all of whose sides the function is evaluated.
 const MAX_SIDES: u32 = 6;
 
+/// The bits to which a piece without a certain root is divided: roots that nearly coincide are told apart, or from none.
+const ROOT_BITS: i64 = 260;
+
+/// The bits to which a change of sign is located where the function has no slope, as at a ledge.
+const LEDGE_BITS: i64 = 140;
+
 /// `is_exact` tells that a change of sign at a ledge is located as closely as is useful.
 fn roots<T: Number>(
     along: &impl Along,
@@ -72,8 +78,8 @@ fn roots<T: Number>(
         {
             continue;
         }
-        let (is_narrow, is_steep) = (piece.is_narrow(&size), is_not_zero(&jet.slope));
-        if is_whole && (is_narrow && is_exact || is_steep) {
+        let (is_narrow, is_steep) = (piece.is_narrow(&size, ROOT_BITS), is_not_zero(&jet.slope));
+        if is_whole && (is_exact && piece.is_narrow(&size, LEDGE_BITS) || is_steep) {
             let root = match (value(&low).sign(), value(&high).sign()) {
                 (Some(one), Some(other)) if one == other && one != Ordering::Equal && is_steep => continue,
                 (Some(one @ (Ordering::Less | Ordering::Greater)), Some(other)) if one == other.reverse() => {

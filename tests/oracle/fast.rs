@@ -206,7 +206,7 @@ impl Number for Fast {
         self.low >= 0.0
     }
 
-    fn is_narrow(&self, size: &Self) -> bool {
+    fn is_narrow(&self, size: &Self, _bits: i64) -> bool {
         self.high - self.low <= 1e-15 * (self.low.abs() + size.high)
     }
 

@@ -58,8 +58,9 @@ pub trait Number: Clone {
     fn is_point(&self) -> bool;
     /// Tells whether no number of the interval is negative.
     fn is_from_0(&self) -> bool;
-    /// Tells whether the interval is as narrow as is useful for numbers of the magnitude of `size`.
-    fn is_narrow(&self, size: &Self) -> bool;
+    /// Tells whether the interval is narrower than numbers of the magnitude of `size` by a factor of 2 to the power of
+    /// `bits`, or by as much as its type is good for.
+    fn is_narrow(&self, size: &Self, bits: i64) -> bool;
     /// Tells whether the interval is less than half as wide as another.
     fn is_half(&self, other: &Self) -> bool;
     fn to_wide(&self) -> Wide;

@@ -458,10 +458,10 @@ impl Number for Wide {
         self.ends().is_some_and(|(low, _)| low.sign().is_ge())
     }
 
-    fn is_narrow(&self, size: &Self) -> bool {
+    fn is_narrow(&self, size: &Self, bits: i64) -> bool {
         let (low, high) = self.ends().expect("a box with ends");
         let size = size.ends().map_or(0, |(_, high)| high.size());
-        high.sub(low).size() <= low.size().max(size) - 260
+        high.sub(low).size() <= low.size().max(size) - bits
     }
 
     fn is_half(&self, other: &Self) -> bool {

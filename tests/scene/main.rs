@@ -5,7 +5,6 @@ mod common;
 
 mod computed;
 mod dump;
-mod examples;
 mod extremes;
 mod grammar;
 mod many;

@@ -12,18 +12,58 @@ use tabray::geometry::{Frame, MISS, Ray, RayRange, Side};
 use tabray::shapes::{Implicit, Made};
 use tabray::world::{AnyShape, Body};
 
-struct By<F> {
-    formula: F,
+/// The formulas of the tests. They are one type, because all that finds hits is compiled for each type.
+#[derive(Clone, Copy)]
+enum Formula {
+    Ball,
+    /// The shape of the template that `tabray new plugin` writes.
+    RoundCube,
+    Cone,
+    /// A wall along the gyroid, clipped to a sphere: it has edges, and rays meet it often.
+    Gyroid,
+    Heart,
+    /// A formula that has no bounds in many places.
+    Wild,
+    /// A formula whose terms are greater than f64 numbers can be, but for places near two planes.
+    Overflowing,
+}
+
+impl Formula {
+    fn value<N: Scalar>(self, [x, y, z]: [N; 3]) -> N {
+        let n = N::constant;
+        match self {
+            Self::Ball => x.powi(2) + y.powi(2) + z.powi(2) - n(1.0),
+            Self::RoundCube => x.powi(4) + y.powi(4) + z.powi(4) - n(1.0),
+            Self::Cone => (x.powi(2) + z.powi(2)).sqrt() - y.abs(),
+            Self::Gyroid => {
+                let ball = (x.powi(2) + y.powi(2) + z.powi(2)).sqrt() - n(2.0);
+                let [x, y, z] = [x, y, z].map(|coordinate| coordinate * n(4.0));
+                let wall = (x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()).abs() - n(0.3);
+                wall.max(n(4.0) * ball)
+            }
+            Self::Heart => {
+                let ellipsoid = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
+                ellipsoid - (x.powi(2) + n(0.1125) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
+            }
+            Self::Wild => (n(1.0) / x).tan() * (y * n(1e9)).floor() + (z.ln() / x).exp(),
+            Self::Overflowing => {
+                let much = n(1e200);
+                much * (much * x.sin()) - much * (much * y.sin())
+            }
+        }
+    }
+}
+
+/// The surface of a formula, which counts how often it is evaluated.
+struct Surface {
+    formula: Formula,
     bounds: [DVec3; 2],
+    count: Arc<AtomicUsize>,
 }
 
-/// A formula, for each number type.
-trait Formula: Send + Sync + 'static {
-    fn value<N: Scalar>(&self, at: [N; 3]) -> N;
-}
-
-impl<F: Formula> Implicit for By<F> {
+impl Implicit for Surface {
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.count.fetch_add(1, Ordering::Relaxed);
         self.formula.value(at)
     }
 
@@ -32,21 +72,20 @@ impl<F: Formula> Implicit for By<F> {
     }
 }
 
-fn shape(formula: impl Formula, low: DVec3, high: DVec3) -> AnyShape {
-    Body::implicit(By { formula, bounds: [low, high] }, Frame::at(DVec3::ZERO)).shape
+fn shape(formula: Formula, low: DVec3, high: DVec3) -> AnyShape {
+    counted(formula, low, high).0
 }
 
-struct Ball;
-
-impl Formula for Ball {
-    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
-        x.powi(2) + y.powi(2) + z.powi(2) - N::constant(1.0)
-    }
+/// Returns a shape and the number of times that its formula was evaluated.
+fn counted(formula: Formula, low: DVec3, high: DVec3) -> (AnyShape, Arc<AtomicUsize>) {
+    let count = Arc::new(AtomicUsize::new(0));
+    let surface = Surface { formula, bounds: [low, high], count: Arc::clone(&count) };
+    (Body::implicit(surface, Frame::at(DVec3::ZERO)).shape, count)
 }
 
 #[test]
 fn the_box_cuts_and_shows_the_inside() {
-    let bowl = shape(Ball, DVec3::splat(-1.0), DVec3::new(1.0, 0.0, 1.0));
+    let bowl = shape(Formula::Ball, DVec3::splat(-1.0), DVec3::new(1.0, 0.0, 1.0));
     let hit = |origin, dir, leaves| {
         bowl.distance(&Ray { origin, dir }, &RayRange { origin_side: leaves, ..RayRange::ALL })
     };
@@ -61,21 +100,12 @@ fn the_box_cuts_and_shows_the_inside() {
     assert!((hit(DVec3::new(-3.0, 0.0, 0.0), DVec3::X, None) - 2.0).abs() < 1e-15);
 }
 
-/// The shape of the template that `tabray new plugin` writes.
-struct RoundCube;
-
-impl Formula for RoundCube {
-    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
-        x.powi(4) + y.powi(4) + z.powi(4) - N::constant(1.0)
-    }
-}
-
 /// The function along such a ray is x^4 plus a constant. The constant, from 1e-2 to 1e-18, is computed in 300 bits.
 #[test]
 fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
     let real = |value: f64| FBig::<HalfEven>::try_from(value).expect("finite").with_precision(300).value();
     let fourth = |value: f64| real(value) * real(value) * real(value) * real(value);
-    let (cube, mut dice) = (shape(RoundCube, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
+    let (cube, mut dice) = (shape(Formula::RoundCube, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
     let (mut hits, mut misses) = (0, 0);
     for _ in 0..5_000 {
         let z = dice.range(-0.9..0.9);
@@ -105,42 +135,22 @@ fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
     assert!(hits > 1_000 && misses > 1_000, "{hits} {misses}");
 }
 
-struct Cone;
-
-impl Formula for Cone {
-    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
-        (x.powi(2) + z.powi(2)).sqrt() - y.abs()
-    }
-}
-
 #[test]
 fn a_tip_has_a_normal() {
-    let cone = shape(Cone, DVec3::splat(-1.0), DVec3::splat(1.0));
+    let cone = shape(Formula::Cone, DVec3::splat(-1.0), DVec3::splat(1.0));
     assert_eq!(cone.normal(DVec3::ZERO), DVec3::Y);
     let ray = Ray { origin: DVec3::new(3.0, 0.0, 0.0), dir: DVec3::NEG_X };
     assert_eq!(cone.distance(&ray, &RayRange::ALL), 3.0);
 }
 
-/// A wall along the gyroid, clipped to a sphere: it has edges, and rays meet it often.
-struct Gyroid;
-
-impl Formula for Gyroid {
-    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
-        let ball = (x.powi(2) + y.powi(2) + z.powi(2)).sqrt() - N::constant(2.0);
-        let [x, y, z] = [x, y, z].map(|coordinate| coordinate * N::constant(4.0));
-        let wall = (x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()).abs() - N::constant(0.3);
-        wall.max(N::constant(4.0) * ball)
-    }
-}
-
 #[test]
 fn thin_walls_and_edges_are_found_as_by_small_steps() {
-    let (gyroid, mut dice) = (shape(Gyroid, DVec3::splat(-2.0), DVec3::splat(2.0)), Dice::new());
+    let (gyroid, mut dice) = (shape(Formula::Gyroid, DVec3::splat(-2.0), DVec3::splat(2.0)), Dice::new());
     let mut hits = 0;
     for _ in 0..300 {
         let (from, to) = (dice.direction() * 4.0, dice.direction() * 1.5);
         let ray = Ray { origin: from, dir: (to - from).normalize() };
-        let value = |distance: f64| Gyroid.value(ray.at(distance).to_array());
+        let value = |distance: f64| Formula::Gyroid.value(ray.at(distance).to_array());
         let found = gyroid.distance(&ray, &RayRange::ALL);
         let stepped = (0..8000).map(|step| f64::from(step) * 1e-3).find(|distance| value(*distance) < 0.0);
         // A step can pass over a hit, but cannot find one too early.
@@ -165,7 +175,7 @@ fn a_hit_does_not_depend_on_the_rays_before_it() {
         .map(|(from, to)| Ray { origin: from, dir: (to - from).normalize() })
         .collect();
     let hits = |rays: &mut dyn Iterator<Item = &Ray>| -> Vec<f64> {
-        let gyroid = shape(Gyroid, DVec3::splat(-2.0), DVec3::splat(2.0));
+        let gyroid = shape(Formula::Gyroid, DVec3::splat(-2.0), DVec3::splat(2.0));
         rays.map(|ray| gyroid.distance(ray, &RayRange::ALL)).collect()
     };
     let (forward, mut backward) = (hits(&mut rays.iter()), hits(&mut rays.iter().rev()));
@@ -175,20 +185,10 @@ fn a_hit_does_not_depend_on_the_rays_before_it() {
     assert_eq!(forward, alone);
 }
 
-/// The gyroid, which counts how often it is evaluated.
-struct CountedGyroid(Arc<AtomicUsize>);
-
-impl Formula for CountedGyroid {
-    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
-        self.0.fetch_add(1, Ordering::Relaxed);
-        Gyroid.value(at)
-    }
-}
-
 #[test]
 fn rays_share_what_is_known_of_the_box() {
-    let (count, mut dice) = (Arc::new(AtomicUsize::new(0)), Dice::new());
-    let gyroid = shape(CountedGyroid(Arc::clone(&count)), DVec3::splat(-2.0), DVec3::splat(2.0));
+    let (gyroid, count) = counted(Formula::Gyroid, DVec3::splat(-2.0), DVec3::splat(2.0));
+    let mut dice = Dice::new();
     let [first, later] = [(); 2].map(|()| {
         for _ in 0..5000 {
             let (from, to) = (dice.direction() * 4.0, dice.direction());
@@ -199,17 +199,9 @@ fn rays_share_what_is_known_of_the_box() {
     assert!(3 * later < 2 * first, "{first} evaluations, then {later}");
 }
 
-struct Wild;
-
-impl Formula for Wild {
-    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
-        (N::constant(1.0) / x).tan() * (y * N::constant(1e9)).floor() + (z.ln() / x).exp()
-    }
-}
-
 #[test]
 fn formulas_without_bounds_end() {
-    let (wild, mut dice) = (shape(Wild, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
+    let (wild, mut dice) = (shape(Formula::Wild, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
     for _ in 0..20 {
         let ray = Ray { origin: dice.direction() * 3.0, dir: dice.direction() };
         let distance = wild.distance(&ray, &RayRange::ALL);
@@ -222,22 +214,10 @@ fn formulas_without_bounds_end() {
     }
 }
 
-/// A formula whose terms are greater than f64 numbers can be, but for places near two planes; it counts how often it is
-/// evaluated.
-struct Overflowing(Arc<AtomicUsize>);
-
-impl Formula for Overflowing {
-    fn value<N: Scalar>(&self, [x, y, _]: [N; 3]) -> N {
-        self.0.fetch_add(1, Ordering::Relaxed);
-        let much = N::constant(1e200);
-        much * (much * x.sin()) - much * (much * y.sin())
-    }
-}
-
 #[test]
 fn where_terms_overflow_a_ray_takes_few_evaluations() {
-    let (count, mut dice) = (Arc::new(AtomicUsize::new(0)), Dice::new());
-    let shape = shape(Overflowing(Arc::clone(&count)), DVec3::splat(-1.0), DVec3::splat(1.0));
+    let (shape, count) = counted(Formula::Overflowing, DVec3::splat(-1.0), DVec3::splat(1.0));
+    let mut dice = Dice::new();
     let rays = 20;
     for _ in 0..rays {
         let origin = dice.direction() * 3.0;
@@ -248,23 +228,11 @@ fn where_terms_overflow_a_ray_takes_few_evaluations() {
     assert!(each < 8000, "{each} evaluations");
 }
 
-/// The formula of a heart, which counts how often it is evaluated.
-struct Counted(Arc<AtomicUsize>);
-
-impl Formula for Counted {
-    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
-        self.0.fetch_add(1, Ordering::Relaxed);
-        let n = N::constant;
-        let ellipsoid = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
-        ellipsoid - (x.powi(2) + n(0.1125) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
-    }
-}
-
 /// Such a ray is rounded by more than the size of the shape, from 1e150 on in twice the precision, too.
 #[test]
 fn a_shape_seen_from_much_too_far_away_takes_few_evaluations() {
-    let (count, mut dice) = (Arc::new(AtomicUsize::new(0)), Dice::new());
-    let heart = shape(Counted(Arc::clone(&count)), DVec3::splat(-1.5), DVec3::splat(1.5));
+    let (heart, count) = counted(Formula::Heart, DVec3::splat(-1.5), DVec3::splat(1.5));
+    let mut dice = Dice::new();
     let evaluations = [1e20, 1e24, 1e150].map(|far| {
         for _ in 0..20 {
             let origin = dice.direction() * far;

@@ -16,6 +16,7 @@ mod costs;
 mod cutouts;
 mod domains;
 mod double_double;
+mod examples;
 mod implicit;
 mod mesh;
 mod models;

@@ -94,7 +94,7 @@ fn cargo(folder: &Path) -> Result<String, String> {
     cargo.env("CARGO_TARGET_DIR", base().join("copy-target")).env("CARGO_BUILD_BUILD_DIR", base().join(".."));
     // The images are small, so the time of compilation matters more than that of rendering. The crate with a plugin of
     // its own takes seconds to compile, and its image half a minute without optimization.
-    cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0");
+    cargo.args(["--config", concat!(env!("CARGO_MANIFEST_DIR"), "/.ci/unoptimized.toml")]);
     cargo.args(["--config", "profile.dev.package.example-plugin.opt-level=2"]);
     // One copy after the other is built, each with other plugins.
     cargo.env("CARGO_INCREMENTAL", "1");
