@@ -164,11 +164,11 @@ rays() {
     local folder=tabray-$version-hard-rays scene name
     files
     # With what scenes include.
-    install -D -t "$out/$folder/parts" scenes/parts/studio.inc
+    install -D -m644 -t "$out/$folder/parts" scenes/parts/studio.inc
     for scene in scenes/entities/{box,capsule,cylinder,disc,ellipsoid,lathe,polygon,prism,quadric,sphere,torus,triangle}.ray \
         scenes/models/{icosahedron.ply,knot.obj,slivers.obj}; do
         name=$(basename "${scene%.*}")
-        install -D -t "$out/$folder/$(basename "$(dirname "$scene")")" "$scene"
+        install -D -m644 -t "$out/$folder/$(basename "$(dirname "$scene")")" "$scene"
         "$program" hard "$scene" -n 10000 -o "$out/$folder/$name-rays.csv"
         "$program" hits "$scene" "$out/$folder/$name-rays.csv" --tight -o "$out/$folder/$name-hits.csv" 2> /dev/null
     done

@@ -89,7 +89,7 @@ impl AreaLight {
         let corners =
             vec![middle - across - up, middle + across - up, middle + across + up, middle - across + up];
         let polygon = outline::polygon(corners, vec![[0, 1, 2], [0, 2, 3]]);
-        outline::body(polygon, true, self.accuracy).ok().map(|body| body.shape)
+        outline::body(polygon, true, false, self.accuracy).ok().map(|body| body.shape)
     }
 }
 

@@ -19,7 +19,7 @@ inventory::submit! {
         let [low, high] = [-half, half].map(|half| outline::sum(center, half, &mut are_rounded));
         let corners = [(low.x, low.z), (high.x, low.z), (high.x, high.z), (low.x, high.z)].map(DVec2::from);
         let solid = outline::prism(&corners, [low.y, high.y], false);
-        let body = solid.and_then(|solid| outline::body(solid, are_rounded, args.accuracy()).ok());
+        let body = solid.and_then(|solid| outline::body(solid, are_rounded, false, args.accuracy()).ok());
         body.ok_or(Refusal {
             attribute: Some("size"),
             message: "is too small at its position: its sides coincide, or are too far away".to_owned(),

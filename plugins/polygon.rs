@@ -17,7 +17,7 @@ inventory::submit! {
     Entity::shape("polygon", "a flat surface with straight edges", &[TABLE], |args| {
         let List(points) = args.get(&POINTS);
         let faces = triangles(&points).unwrap_or_default();
-        outline::body(outline::polygon(points, faces), false, args.accuracy()).map_err(|_| Refusal {
+        outline::body(outline::polygon(points, faces), false, false, args.accuracy()).map_err(|_| Refusal {
             attribute: Some("points"),
             message: "has no area".to_owned(),
             help: "the corners must not lie on one line",

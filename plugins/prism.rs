@@ -29,8 +29,10 @@ inventory::submit! {
         };
         let corners: Vec<_> = args.get(&POINTS).0.iter().map(corner).collect();
         let top = from_base(0.0, args.get(&HEIGHT), 0.0).y;
-        let solid = outline::prism(&corners, [base.y, top], args.get(&OPEN));
-        let body = solid.and_then(|solid| outline::body(solid, are_rounded, args.accuracy()).ok());
+        let is_open = args.get(&OPEN);
+        let solid = outline::prism(&corners, [base.y, top], is_open);
+        // As with a tube, its inside is seen.
+        let body = solid.and_then(|solid| outline::body(solid, are_rounded, is_open, args.accuracy()).ok());
         body.ok_or(Refusal {
             attribute: Some("points"),
             message: "is too small at its position: some of its edges meet, or are too far away".to_owned(),

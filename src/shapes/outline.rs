@@ -125,13 +125,19 @@ pub fn sum(one: DVec3, other: DVec3, is_rounded: &mut bool) -> DVec3 {
     one + other
 }
 
-/// Makes an object of triangles. `are_rounded` tells whether their vertices may have been rounded.
+/// Makes an object of triangles. `are_rounded` tells whether their vertices may have been rounded, and `is_two_sided`
+/// whether an open surface is lit on both sides.
 ///
 /// # Errors
 /// Returns the reason why the triangles make no object.
-pub fn body(model: Model, are_rounded: bool, accuracy: Accuracy) -> Result<Body, SurfaceError> {
+pub fn body(
+    model: Model,
+    are_rounded: bool,
+    is_two_sided: bool,
+    accuracy: Accuracy,
+) -> Result<Body, SurfaceError> {
     let in_place = ToWorld::new(DVec3::ONE, Rotation::NONE, DVec3::ZERO);
-    let mut surface = Surface::new(model, &in_place, Look::default())?;
+    let mut surface = Surface::new(model, &in_place, Look { is_two_sided, ..Look::default() })?;
     surface.are_rounded = are_rounded;
     let surface = Arc::new(surface);
     Ok(match accuracy {

@@ -246,3 +246,20 @@ fn a_lamp_that_is_seen_has_highlights_without_mirror_images() {
         assert!((5..400).contains(&brighter), "{brighter}");
     }
 }
+
+#[test]
+fn the_inside_of_an_open_prism_is_lit_as_that_of_a_tube() {
+    for shape in [
+        "cylinder tube { material white base 0 0 0 height 2 radius 1 open yes }",
+        "prism tube { material white points 1 0  0 1  -1 0  0 -1 height 2 open yes }",
+    ] {
+        for material in ["material white { diffuse 9 9 9 }", "plastic white { colour 0.9 0.9 0.9 }"] {
+            let scene = model(&format!(
+                "look_at eye {{ pixeldim 4 3 position 0 9 0 target 1 0 0 }} {material} {shape}
+                 light lamp {{ location 0 5 0 emissivity 5 5 5 }}"
+            ));
+            let colour = seen(&scene, [-0.3, 4.0, -0.3], [0.8, -3.0, 0.8]);
+            assert!(colour.min_element() > 0.05, "{shape} {material}: {colour}");
+        }
+    }
+}
