@@ -14,7 +14,7 @@ pub trait TraceObserver {
         false
     }
 
-    /// Receives an event.
+    /// Receives an event, unless [`sees_events`](Self::sees_events) is false.
     fn see(&mut self, _event: Event) {}
 
     /// Receives a count of work done or saved.

@@ -11,10 +11,19 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tabray::render::Plan;
+use tabray::render::{Plan, TraceObserver};
 use tabray::scene::{self, Model, Registry};
 use tabray::tools::threads::renderer_with;
 use tabray::world::Accuracy;
+
+/// An observer that sees each event and does nothing.
+pub struct Onlooker;
+
+impl TraceObserver for Onlooker {
+    fn sees_events(&self) -> bool {
+        true
+    }
+}
 
 /// Returns the entity types of the program.
 pub fn registry() -> &'static Registry {

@@ -1,7 +1,6 @@
 //! What rays cost whose hits take long to find.
 
-use crate::common::model;
-use tabray::render::TraceObserver;
+use crate::common::{Onlooker, model};
 use tabray::render::plan::Plan;
 use tabray::render::ray_stats::RayStats;
 use tabray::render::trace::{self, Scratch, Tracer};
@@ -23,14 +22,6 @@ const LONG: &str = "revsurf long { material glass profile \"cos(sin(y) + 1e-8 - 
 
 /// A heart of glass, of which each search takes as long as 60 plain rays.
 const HEART: &str = "heart heart { material glass center 4 3 -2 size 2 }";
-
-struct Onlooker;
-
-impl TraceObserver for Onlooker {
-    fn sees_events(&self) -> bool {
-        true
-    }
-}
 
 /// Renders all pixels in packets and one by one, where every step is reported; returns how many rays were cast in
 /// packets, and how many pixels were cut off.

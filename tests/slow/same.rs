@@ -2,8 +2,8 @@
 //! one, or on whether somebody looks on.
 
 use crate::common::program::{folder, outcome, scene, tabray};
-use crate::common::{model, scenes, small};
-use tabray::render::{Plan, TraceObserver, trace};
+use crate::common::{Onlooker, model, scenes, small};
+use tabray::render::{Plan, trace};
 use tabray::scene::Model;
 use tabray::simd::Cpu;
 use tabray::tools::threads::renderer_with;
@@ -77,12 +77,6 @@ fn certain_pixels_depend_on_neither_threads_nor_instructions() {
 
 #[test]
 fn whoever_looks_on_sees_the_colours_of_the_picture() {
-    struct Onlooker;
-    impl TraceObserver for Onlooker {
-        fn sees_events(&self) -> bool {
-            true
-        }
-    }
     let thread = renderer_with(1).expect("a thread with room for deep reflections");
     let check = |name: &str, model: &Model| {
         let plan = Plan::new(model);

@@ -15,6 +15,9 @@ use tabray_core::geometry::Aabb;
 /// The number of rounds. Each one's limit is twice that of the one before: the least moves come first.
 pub const ROUNDS: i32 = 5;
 
+/// The maximum number of times that merging begins.
+const ATTEMPTS: usize = 8;
+
 /// The most triangles around two vertices that merge.
 const MOST: usize = 24;
 
@@ -48,22 +51,22 @@ struct Star {
     moved: f64,
 }
 
-/// Merges vertices as long as no point of the mesh moves farther than a limit and no triangles cross. Vertices that are
-/// fixed stay, and so do their triangles.
+/// Merges vertices as long as no point of the mesh moves farther than a limit. Vertices that are fixed stay. Where
+/// merged triangles cross, merging begins again with the vertices there fixed; where that does not help, none are merged.
 pub fn merged(triangles: &Triangles, mut fixed: Vec<bool>, limit: f64, done: Done) -> Triangles {
-    loop {
+    for _ in 0..ATTEMPTS {
         let mut merged = triangles.clone();
         let is_moved = merge(&mut merged, &fixed, limit, done);
         let crossing = crossing(&merged, &is_moved);
         if crossing.is_empty() {
             return merged;
         }
-        // Before they were merged, they did not cross.
         for (is_fixed, vertex) in fixed.iter_mut().zip(&triangles.vertices) {
             let near = Aabb { low: vertex.at - limit, high: vertex.at + limit };
             *is_fixed |= crossing.iter().any(|bounds| bounds.overlaps(&near));
         }
     }
+    triangles.clone()
 }
 
 /// Merges vertices, and tells which of the triangles that are left have moved.
@@ -127,6 +130,16 @@ impl Mesh<'_> {
             (DVec2::new(by.dot(one), by.dot(other)), by.dot(normal))
         };
         let places: Vec<_> = edges.iter().map(place).collect();
+        // All turn to the left as seen from the vertex: they turn once if one of them crosses the axis ahead of it.
+        let crosses = |[a, b]: &[u32; 2]| {
+            let is_below = |of: &u32| {
+                edges.iter().position(|[corner, _]| corner == of).is_some_and(|at| places[at].0.y < 0.0)
+            };
+            is_below(a) && !is_below(b)
+        };
+        if edges.iter().filter(|edge| crosses(edge)).count() != 1 {
+            return None;
+        }
         let diameter = 2.0 * places.iter().map(|(place, _)| place.length()).fold(0.0, f64::max);
         let least = normals.map(|of| of.dot(normal)).fold(THIN * diameter * diameter, f64::min);
         Some(Star { edges, places, diameter, least, moved })

@@ -1,11 +1,11 @@
 //! Rays that leave surfaces: into closed shapes, and from points that lie on several surfaces.
 
 use super::Random;
-use crate::common::{model, render};
+use crate::common::{Onlooker, model, render};
 use glam::{DVec3, dvec3};
 use image::RgbImage;
 use tabray::geometry::{Ray, RayRange, Side};
-use tabray::render::{Event, Plan, TraceObserver, to_byte, trace};
+use tabray::render::{Plan, to_byte, trace};
 
 const BLUE: [u8; 3] = [0, 0, 255];
 
@@ -269,17 +269,6 @@ fn the_first_of_floor_and_wall_is_seen_without_dots_where_they_meet() {
         let is_smooth = |pair: &[[u8; 3]]| pair[0][0].abs_diff(pair[1][0]) < 8;
         assert!(row.windows(2).all(is_smooth), "{row:?}");
     }
-}
-
-/// An observer that ignores every event.
-struct Onlooker;
-
-impl TraceObserver for Onlooker {
-    fn sees_events(&self) -> bool {
-        true
-    }
-
-    fn see(&mut self, _event: Event) {}
 }
 
 /// Where surfaces coincide, single rays decide, and the other rays of the packet must not matter.
