@@ -279,3 +279,22 @@ fn a_probe_of_an_empty_pixel_says_that_nothing_was_met() {
     let text = String::from_utf8(out).expect("a text");
     assert!(text.contains("hit      nothing\n") && text.ends_with("bytes            (0, 0, 0)\n"), "{text}");
 }
+
+#[test]
+fn probe_tells_the_bytes_of_the_image_where_light_bounces() {
+    let scene = model(
+        "look_at eye { pixeldim 4 3 position 0 2 6 target 0 0 0 rules free bounces 1 } material m { diffuse 0.8 0.8 0.8 }
+         sphere ball { material m center 0 1 0 radius 1 } plane floor { material m normal 0 1 0 point 0 0 0 }
+         sky day { lights yes }",
+    );
+    let plan = Plan::new(&scene);
+    let image = Renderer::default().picture(&plan);
+    for (index, bytes) in image.chunks(3).enumerate() {
+        let (x, y) = (index % 4, 2 - index / 4);
+        let mut out = Vec::new();
+        probe::pixel(&plan, x, y, &mut out).expect("memory takes it");
+        let text = String::from_utf8(out).expect("a text");
+        let shown = format!("({}, {}, {})", bytes[0], bytes[1], bytes[2]);
+        assert!(text.trim_end().ends_with(&shown), "{shown} in {text}");
+    }
+}

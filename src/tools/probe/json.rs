@@ -85,7 +85,7 @@ pub fn explained<'m>(plan: &Plan<'m>, x: usize, y: usize) -> PixelExplained<'m> 
     let camera = &plan.camera;
     let mut listener = Listener { model: plan.model, rays: Vec::new(), open: Vec::new(), shadow: None };
     let of_centre = trace::observe_colour(plan, &camera.sight(x as f64, y as f64), None, &mut listener);
-    let light = if camera.samples > 1 { trace::pixel(plan, x, y) } else { of_centre };
+    let light = if camera.is_single() { of_centre } else { trace::pixel(plan, x, y) };
     let display = camera.display();
     PixelExplained {
         pixel: [x, y],

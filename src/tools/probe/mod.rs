@@ -46,8 +46,12 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
     probe.outcome?;
     writeln!(out)?;
     conclude(colour, &camera.display(), out)?;
-    if camera.samples > 1 {
-        writeln!(out, "\nall {} samples together:\n", camera.samples)?;
+    // Where light bounces, even the only sample is not the ray through the middle.
+    if !camera.is_single() {
+        match camera.samples {
+            1 => writeln!(out, "\nthe sample of the image:\n")?,
+            samples => writeln!(out, "\nall {samples} samples together:\n")?,
+        }
         conclude(trace::pixel(plan, x, y), &camera.display(), out)?;
     }
     Ok(())
