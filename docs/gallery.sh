@@ -23,8 +23,8 @@ draw() {
         pngquant --nofs --strip --force --output "$image" 96 "$image"
     done
 }
-draw 64..256 scenes/entities/{lathe,box,cylinder,capsule,disc,polygon,tiles,rainbow,checker,image,formula}.ray \
+draw 64..256 scenes/entities/{lathe,prism,faces,box,cylinder,capsule,disc,polygon,tiles,rainbow,checker,image,formula}.ray \
     scenes/entities/{bumps,metal,plastic,background,sky,environment,look_at,orthographic,fisheye,thin_lens}.ray
 # What takes long, is in the light of the notes, or is of glass, where a pixel has a limited number of rays for all of its
 # samples together.
-draw 64 scenes/entities/{prism,faces,implicit,union,intersection,difference,glass}.ray scenes/glass/bubbles.ray
+draw 64 scenes/entities/{implicit,union,intersection,difference,glass}.ray scenes/glass/bubbles.ray

@@ -80,7 +80,7 @@ impl<'m> Tracer<'m, '_> {
         let lens = |side: usize| self.scratch.lens[side].get(lane).copied().unwrap_or_default();
         let sight = || self.plan.camera.sight_through(x[lane], y[lane], DVec2::new(lens(0), lens(1)));
         let sight = group.looks.then(sight).or_else(|| group.sights.get(lane).cloned());
-        RoundedRay { ray: group.rays().get(lane), error: group.error(lane), sight }
+        RoundedRay { ray: group.rays().get(lane), error: group.errors.of(lane), sight }
     }
 
     /// Tells whether any ray may hit an object at all: most shapes cannot be hit by rays that leave them.
@@ -357,7 +357,6 @@ impl RepeatedRay {
 
     /// Returns the copies as a packet.
     fn rays(&self, group: &RayGroup) -> RayPacket<'_> {
-        let origin_error = group.errors.most;
-        RayPacket::new(self.origin.view(LANES), self.dir.view(LANES), origin_error)
+        RayPacket::new(self.origin.view(LANES), self.dir.view(LANES), group.errors.of(self.lane))
     }
 }

@@ -7,7 +7,7 @@ use super::estimate::AdaptiveScratch;
 use super::path_hash::PathHashes;
 use super::ray_group::{HitGroups, HitRecord, RayGroup};
 use super::scatter::CountedLight;
-use super::surface::{Errors, Surface};
+use super::surface::{PointErrors, Surface};
 use super::wave::TreeScratch;
 use crate::observer::TraceObserver;
 use crate::plan::Plan;
@@ -16,7 +16,6 @@ use f256::f256;
 use glam::DVec3;
 use tabray_world::accuracy::Accuracy;
 use tabray_world::certify::Doubt;
-use tabray_world::coincidence;
 use tabray_world::geometry::bvh::Stack;
 use tabray_world::geometry::ray::Side;
 use tabray_world::geometry::ray_packet::PACKET_SIZE;
@@ -82,13 +81,19 @@ impl<'m, 'w> Tracer<'m, 'w> {
         if self.depth < DEEP { PACKET_SIZE } else { NARROW }
     }
 
-    /// Returns the errors of the points where rays have hit a shape.
-    pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
+    /// Bounds the errors of the points where rays have hit a shape.
+    pub(super) fn bound_errors(
+        &self,
+        shape: &dyn Hittable,
+        travelled: &[f64],
+        cosines: &[f64],
+        errors: &mut PointErrors,
+    ) {
         if self.is_classic() {
-            return Errors::NONE;
+            errors.clear();
+        } else {
+            errors.bound(self.cpu, travelled, shape.facts().max_coordinate + self.viewer, cosines);
         }
-        let reach = shape.facts().max_coordinate + self.viewer;
-        Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 }
 
@@ -257,6 +262,8 @@ pub(super) struct ShadowScratch {
     pub lanes: Vec<u8>,
     pub origin: VectorList,
     pub dir: VectorList,
+    /// Bounds on the errors of the origins.
+    pub errors: PointErrors,
     /// The distances at which the cast rays end, in world units.
     pub their_t_max: Vec<f64>,
     /// 1 for the cast rays that are blocked.

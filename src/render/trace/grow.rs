@@ -110,14 +110,11 @@ impl Tracer<'_, '_> {
         let mut start = 0;
         while let Some(kind) = kinds.get(start).copied() {
             let same = kinds[start..].iter().take(together).take_while(|other| **other == kind);
-            let (object, counted, is_heavy) = kind;
+            let (_, counted, is_heavy) = kind;
             let places = &order[start..start + same.count()];
             start += places.len();
             self.scratch.path_hashes.is_on = is_heavy;
             scratch.gather(places, &mut group);
-            let count = group.padded();
-            let shape = &self.model.objects[object as usize].shape;
-            group.errors = self.errors(&**shape, &group.travelled[..count], &group.cosines[..count]);
             self.begin_open(&scratch.wave.rays, places);
             self.scratch.trees = Some(scratch);
             self.counted = counted;

@@ -6,7 +6,7 @@ use super::closest_hit::clamp_to_brackets;
 use super::context::Tracer;
 use super::exact::exact;
 use super::ray_group::RayGroup;
-use super::surface::{Errors, Surface};
+use super::surface::Surface;
 use std::ops::Range;
 use tabray_world::coincidence;
 use tabray_world::geometry::ray::{MISS, Side};
@@ -108,17 +108,11 @@ impl Tracer<'_, '_> {
 
     /// Computes the points, normals and sides at which the rays of a group hit their objects, and bounds on the
     /// errors of the points.
-    pub(super) fn interact_mixed(
-        &self,
-        group: &RayGroup,
-        distances: &[f64],
-        surface: &mut Surface,
-    ) -> Errors {
+    pub(super) fn interact_mixed(&self, group: &RayGroup, distances: &[f64], surface: &mut Surface) {
         let count = group.padded();
-        let Surface { points, normals, sides, cosines, travelled, objects, .. } = surface;
+        let Surface { points, normals, sides, cosines, travelled, objects, errors, .. } = surface;
         let (mut all_points, mut all_normals) = (points.resized(count), normals.resized(count));
         let (all_sides, all_cosines) = (resized(sides, count), resized(cosines, count));
-        let mut reach = 0.0_f64;
         each_run(objects, |object, lanes| {
             let run = Run::of(group, lanes.clone());
             let shape = &self.model.objects[object].shape;
@@ -135,7 +129,6 @@ impl Tracer<'_, '_> {
                 travelled: &mut run_travelled,
             };
             shape.packets().interact(self.cpu, run.rays(group), &run.gather(distances), interaction);
-            reach = reach.max(shape.facts().max_coordinate);
             for (place, lane) in lanes.enumerate() {
                 all_points.set(lane, points.get(place));
                 all_normals.set(lane, normals.get(place));
@@ -150,15 +143,10 @@ impl Tracer<'_, '_> {
             (all_sides[lane], all_cosines[lane]) = (all_sides[last], all_cosines[last]);
             travelled[lane] = travelled[last];
         }
-        let reach = reach + self.viewer;
-        let most = coincidence::most_error(self.cpu, &travelled[..count], reach, &cosines[..count]);
-        Errors { reach: Some(reach), most }
-    }
-
-    /// Returns a bound on the error of a point of a surface, in world units, by the object that is hit there.
-    pub(super) fn point_error(&self, surface: &Surface, lane: usize) -> f64 {
-        let Some(object) = surface.objects.get(lane) else { return surface.error(lane) };
-        let reach = self.model.objects[*object as usize].shape.facts().max_coordinate + self.viewer;
-        coincidence::error_after(surface.travelled[lane], reach, surface.cosines[lane])
+        let error = |(lane, object): (usize, &u32)| {
+            let reach = self.model.objects[*object as usize].shape.facts().max_coordinate + self.viewer;
+            coincidence::error_after(travelled[lane], reach, all_cosines[lane])
+        };
+        errors.fill(count, objects[..group.len].iter().enumerate().map(error));
     }
 }

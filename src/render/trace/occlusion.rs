@@ -171,14 +171,8 @@ impl Occlusion<'_, '_, '_> {
             for lane in 0..t_max.len() {
                 if doubt[lane] != 0 {
                     let origin_side = rays.side(lane);
-                    let start = self.shadow_rays.start(self.part.start + lane);
-                    let error = self.tracer.point_error(self.shadow_rays.surface, start);
-                    let distance = exact(
-                        shape,
-                        &RoundedRay { ray: rays.get(lane), error, sight: None },
-                        origin_side,
-                        t_max[lane],
-                    );
+                    let start = RoundedRay { ray: rays.get(lane), error: rays.error(lane), sight: None };
+                    let distance = exact(shape, &start, origin_side, t_max[lane]);
                     blocked[lane] |= u64::from(distance < t_max[lane]);
                 }
             }
@@ -243,15 +237,14 @@ impl Tracer<'_, '_> {
         blocked: &mut [u64],
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let ShadowScratch { lanes, origin, dir, their_t_max, their_blocked, sides } = shadows;
-        let origin_error = surface.errors.most;
+        let ShadowScratch { lanes, origin, dir, errors, their_t_max, their_blocked, sides } = shadows;
         // A ray whose budget is used up counts as not blocked.
         let len = charge_shadow_rays(cpu, group.len, &mut group.ray_budget[..count], t_max, blocked);
         if len == 0 {
             return;
         }
         self.observer.count(Count::Rays(RayKind::Shadow, len));
-        let rays = RayPacket::new(surface.points.view(count), paths.toward.view(count), origin_error);
+        let rays = surface.errors.rays(surface.points.view(count), paths.toward.view(count));
         let cast = (0..group.len).filter(|lane| t_max[*lane] > 0.0);
         self.charge_searches(rays, Some((surface.index, &surface.sides)), cast, &mut group.ray_budget);
         if 2 * len > group.len {
@@ -266,11 +259,12 @@ impl Tracer<'_, '_> {
         let count = len.next_multiple_of(LANES);
         origin.gather(&surface.points, lanes, count);
         dir.gather(paths.toward, lanes, count);
+        errors.gather(&surface.errors, lanes, count);
         gather(their_t_max, t_max, lanes, count);
         gather(sides, &surface.sides, lanes, count);
         let their_blocked = resized(their_blocked, count);
         their_blocked.fill(0);
-        let rays = RayPacket::new(origin.view(count), dir.view(count), origin_error);
+        let rays = errors.rays(origin.view(count), dir.view(count));
         let (t_max, sides) = (&their_t_max[..count], &sides[..count]);
         let shadow_rays = ShadowRays { rays, len, going: len, t_max, surface, lanes: Some(lanes), sides };
         self.occlude(&shadow_rays, &paths.from, &paths.to, their_blocked);

@@ -2,7 +2,7 @@
 
 use super::arrays::{VectorList, gather, resized};
 use super::light::{self, PathWeight};
-use super::surface::{Errors, SecondaryRays, Surface};
+use super::surface::{PointErrors, SecondaryRays, Surface};
 use super::tree::OpenRay;
 use crate::limits::MAX_RAYS;
 use crate::plan::depth::{Branch, Depth};
@@ -56,10 +56,8 @@ pub(super) struct RayGroup {
     pub is_from_one: bool,
     /// The side of the object that each ray leaves.
     pub sides: Vec<Side>,
-    /// The cosines of the angles at which the rays' predecessors hit the origins.
-    pub cosines: Vec<f64>,
-    /// The errors of the origins.
-    pub errors: Errors,
+    /// Bounds on the errors of the origins.
+    pub errors: PointErrors,
 }
 
 impl RayGroup {
@@ -134,7 +132,7 @@ impl RayGroup {
         }
         self.origin_object = None;
         self.is_from_one = true;
-        self.errors = Errors::NONE;
+        self.errors.clear();
     }
 
     /// Marks the rays as known only by their rounded numbers.
@@ -171,13 +169,7 @@ impl RayGroup {
     #[inline(always)]
     pub fn rays(&self) -> RayPacket<'_> {
         let count = self.padded();
-        let origin_error = self.errors.most;
-        RayPacket::new(self.origin.view(count), self.dir.view(count), origin_error)
-    }
-
-    /// Returns a bound on the error of one ray's origin, in world units.
-    pub fn error(&self, lane: usize) -> f64 {
-        self.errors.of(&self.travelled, &self.cosines, lane)
+        self.errors.rays(self.origin.view(count), self.dir.view(count))
     }
 
     /// Returns the index of the object that the rays leave, and the sides that they leave.
@@ -204,9 +196,8 @@ impl RayGroup {
         gather(&mut self.places, &from.places, lanes, count);
         self.origin_object = from.origin_object;
         self.is_from_one = from.is_from_one;
-        self.errors = from.errors;
+        self.errors.gather(&from.errors, lanes, count);
         if self.origin_object.is_some() {
-            self.gather_cosines(&from.cosines, lanes);
             self.origin.gather(&from.origin, lanes, count);
             gather(&mut self.travelled, &from.travelled, lanes, count);
             gather(&mut self.sides, &from.sides, lanes, count);
@@ -234,14 +225,13 @@ impl RayGroup {
         self.origin_object = Some(rays.origin_object);
         self.is_from_one = false;
         gather(&mut self.sides, rays.sides, lanes, count);
-        self.errors = rays.errors;
-        self.gather_cosines(rays.cosines, lanes);
+        self.errors.gather(rays.errors, lanes, count);
     }
 
     /// Becomes open rays that leave the same object, with these ray budgets.
     pub fn open<'r>(
         &mut self,
-        rays: impl ExactSizeIterator<Item = &'r OpenRay>,
+        rays: impl ExactSizeIterator<Item = &'r OpenRay> + Clone,
         budgets: impl Iterator<Item = u32>,
     ) {
         self.len = rays.len();
@@ -249,7 +239,8 @@ impl RayGroup {
         let count = self.padded();
         (self.path_weight, self.is_from_one) = (None, false);
         let (mut origin, mut dir) = (self.origin.resized(count), self.dir.resized(count));
-        let (travelled, cosines) = (resized(&mut self.travelled, count), resized(&mut self.cosines, count));
+        let travelled = resized(&mut self.travelled, count);
+        self.errors.fill(count, rays.clone().map(|ray| ray.error));
         self.sides.resize(count.max(self.sides.len()), Side::Outside);
         let (camera, budget) = (resized(&mut self.camera, count), resized(&mut self.ray_budget, count));
         for (lane, (ray, left)) in rays.zip(budgets).enumerate() {
@@ -258,18 +249,10 @@ impl RayGroup {
             for lane in lane..end {
                 origin.set(lane, ray.origin);
                 dir.set(lane, ray.dir);
-                (travelled[lane], cosines[lane]) = (ray.travelled, ray.cosine);
+                travelled[lane] = ray.travelled;
                 (camera[lane], budget[lane], self.sides[lane]) = (ray.camera, left, ray.side);
             }
             self.origin_object = Some(ray.object as usize);
-        }
-    }
-
-    /// Gathers the cosines of some lanes, where errors are computed at all.
-    fn gather_cosines(&mut self, from: &[f64], lanes: &[u8]) {
-        if self.errors.reach.is_some() {
-            let count = self.padded();
-            gather(&mut self.cosines, from, lanes, count);
         }
     }
 
@@ -287,8 +270,7 @@ impl RayGroup {
         self.origin_object = Some(surface.index);
         self.is_from_one = false;
         swap(&mut self.sides, &mut surface.sides);
-        swap(&mut self.cosines, &mut surface.cosines);
-        self.errors = surface.errors;
+        swap(&mut self.errors, &mut surface.errors);
     }
 
     /// Takes over the remaining ray budgets of some lanes, which were traced as another group.

@@ -7,7 +7,7 @@ use super::light;
 use super::mixed;
 use super::ray_group::RayGroup;
 use super::scatter::CountedLight;
-use super::surface::{Errors, SeenPatches, Surface};
+use super::surface::{SeenPatches, Surface};
 use crate::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose};
 use crate::plan::depth::{Branch, STEPS, step};
 use glam::DVec3;
@@ -168,7 +168,7 @@ impl Tracer<'_, '_> {
         surface.facets.clear();
         let travelled = resized(&mut surface.travelled, count);
         travelled.copy_from_slice(&group.travelled[..count]);
-        let mixed_errors = if surface.objects.is_empty() {
+        if surface.objects.is_empty() {
             let interaction = SurfaceInteraction {
                 points: surface.points.resized(count),
                 normals: surface.normals.resized(count),
@@ -178,10 +178,9 @@ impl Tracer<'_, '_> {
                 travelled,
             };
             shape.packets().interact(cpu, group.rays(), distances, interaction);
-            None
         } else {
-            Some(self.interact_mixed(group, distances, surface))
-        };
+            self.interact_mixed(group, distances, surface);
+        }
         self.pass_media(group, distances, surface);
         let window = if shader.sees().patch { self.plan.camera.window() } else { None };
         // Rays that continue from others are those of a wave.
@@ -219,13 +218,13 @@ impl Tracer<'_, '_> {
             || surface.is_mirror
             || material.transparency != 0.0
             || self.plan.camera.bounces != 0;
-        surface.errors = if let Some(errors) = mixed_errors {
-            errors
-        } else if goes_on {
-            self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
-        } else {
-            Errors::NONE
-        };
+        if surface.objects.is_empty() {
+            let Surface { travelled, cosines, errors, .. } = surface;
+            match goes_on {
+                true => self.bound_errors(&**shape, &travelled[..count], &cosines[..count], errors),
+                false => errors.clear(),
+            }
+        }
         if self.sees_events {
             self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }

@@ -1,18 +1,20 @@
 //! The points where the rays of a packet hit one object, and the rays that continue from there.
 
-use super::arrays::VectorList;
+use super::arrays::{VectorList, gather, resized};
 use super::facets::Facets;
 use super::light::{Colours, Reflectivities};
 use super::tree::OpenRay;
 use glam::DVec3;
 use tabray_world::coincidence;
 use tabray_world::geometry::ray::Side;
+use tabray_world::geometry::ray_packet::RayPacket;
 use tabray_world::interface::{Crossing, Interface};
 use tabray_world::material::{Look, Material, Rgb};
 use tabray_world::packets::shader::SurfacePoints;
 use tabray_world::patch::{Patch, Window};
 use tabray_world::rules;
 use tabray_world::scene::model::Object;
+use tabray_world::simd::cpu::Cpu;
 use tabray_world::simd::soa::View;
 use tabray_world::surface_point::SurfacePoint;
 
@@ -38,8 +40,8 @@ pub(super) struct Surface {
     pub travelled: Vec<f64>,
     /// The cosines of the angles between the rays and the normals before they are flipped, from -1 to 1.
     pub cosines: Vec<f64>,
-    /// The errors of the points.
-    pub errors: Errors,
+    /// Bounds on the errors of the points.
+    pub errors: PointErrors,
     /// The reflectivities, where they are the same at all points.
     pub look: Option<Look>,
     /// The specular reflectivity at each point, where `look` is `None`.
@@ -203,8 +205,8 @@ impl Surface {
 
     /// Returns rays from the points in these directions.
     pub fn secondary_rays<'o>(&'o self, dir: &'o VectorList) -> SecondaryRays<'o> {
-        let Self { index, points, sides, travelled, cosines, errors, .. } = self;
-        SecondaryRays { points, dir, travelled, origin_object: *index, sides, cosines, errors: *errors }
+        let Self { index, points, sides, travelled, errors, .. } = self;
+        SecondaryRays { points, dir, travelled, origin_object: *index, sides, errors }
     }
 
     /// Returns an open ray of a tree that continues another ray from a point.
@@ -212,16 +214,11 @@ impl Surface {
         OpenRay {
             origin: self.points.get(lane),
             travelled: self.travelled[lane],
-            cosine: self.cosines[lane],
+            error: self.errors.of(lane),
             object: self.index as u32,
             depth: before.depth + 1,
             ..*before
         }
-    }
-
-    /// Returns a bound on the error of a point, in world units.
-    pub fn error(&self, lane: usize) -> f64 {
-        self.errors.of(&self.travelled, &self.cosines, lane)
     }
 
     /// Returns the specular reflectivity at a point.
@@ -300,28 +297,56 @@ pub(super) struct SecondaryRays<'o> {
     pub origin_object: usize,
     /// The side of the object that each ray leaves.
     pub sides: &'o [Side],
-    /// The cosines of the angles at which the group's rays hit the points.
-    pub cosines: &'o [f64],
-    /// The errors of the points.
-    pub errors: Errors,
+    /// Bounds on the errors of the points.
+    pub errors: &'o PointErrors,
 }
 
-/// Bounds on the errors of computed hit points. The bound of a single point is computed on demand.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Errors {
-    /// The largest magnitude of the coordinates that the points are computed from, in world units, without the path
-    /// length; `None` where errors make no difference.
-    pub reach: Option<f64>,
-    /// A bound on the error of every point, in world units.
+/// Bounds on the errors of computed hit points, in world units.
+#[derive(Default)]
+pub(super) struct PointErrors {
+    /// The bound of each point; empty where the points count as exact.
+    each: Vec<f64>,
+    /// The largest bound.
     pub most: f64,
 }
 
-impl Errors {
-    /// The errors of exact points.
-    pub const NONE: Self = Self { reach: None, most: 0.0 };
+impl PointErrors {
+    /// Becomes the errors of exact points.
+    pub fn clear(&mut self) {
+        self.each.clear();
+        self.most = 0.0;
+    }
 
-    /// Returns a bound on the error of one point, in world units.
-    pub fn of(&self, travelled: &[f64], cosines: &[f64], lane: usize) -> f64 {
-        self.reach.map_or(0.0, |reach| coincidence::error_after(travelled[lane], reach, cosines[lane]))
+    /// Becomes the errors of points at these path lengths from the viewer, in world units, which rays have hit at angles
+    /// with these cosines. `reach` is the largest magnitude of the coordinates that they are computed from.
+    pub fn bound(&mut self, cpu: Cpu, travelled: &[f64], reach: f64, cosines: &[f64]) {
+        let each = resized(&mut self.each, cosines.len());
+        self.most = coincidence::errors_after(cpu, travelled, reach, cosines, each);
+    }
+
+    /// Becomes these errors, the last of them repeated to make `count`.
+    pub fn fill(&mut self, count: usize, errors: impl Iterator<Item = f64>) {
+        self.clear();
+        self.each.extend(errors);
+        self.most = self.each.iter().copied().fold(0.0, f64::max);
+        self.each.resize(count, self.each.last().copied().unwrap_or_default());
+    }
+
+    /// Becomes the errors of some lanes, the last of them repeated to make `count`.
+    pub fn gather(&mut self, from: &Self, lanes: &[u8], count: usize) {
+        gather(&mut self.each, &from.each, lanes, count);
+        self.most = from.most;
+    }
+
+    /// Returns a bound on the error of one point.
+    pub fn of(&self, lane: usize) -> f64 {
+        self.each.get(lane).copied().unwrap_or_default()
+    }
+
+    /// Returns rays from the first points, with the bounds of their errors.
+    #[inline(always)]
+    pub fn rays<'r>(&'r self, origin: View<'r>, dir: View<'r>) -> RayPacket<'r> {
+        let errors = if self.each.is_empty() { &[] } else { &self.each[..origin.len()] };
+        RayPacket::new(origin, dir, self.most).with_errors(errors)
     }
 }

@@ -7,6 +7,7 @@ use super::ray_group::RayGroup;
 use super::surface::Surface;
 use crate::observer::{Count, Event, RayKind, RayPurpose};
 use tabray_world::geometry::ray::{Ray, Side};
+use tabray_world::geometry::ray_packet::PACKET_SIZE;
 use tabray_world::material::Rgb;
 
 impl Tracer<'_, '_> {
@@ -93,7 +94,7 @@ impl Tracer<'_, '_> {
         let object = &self.model.objects[index];
         let count = group.padded();
         resized(&mut group.sides, count);
-        resized(&mut group.cosines, count);
+        let mut cosines = [0.0; PACKET_SIZE];
         for lane in 0..count {
             let ray = Ray { origin: group.origin.get(lane), dir: group.dir.get(lane) };
             let point = ray.at(distances[lane]);
@@ -102,13 +103,13 @@ impl Tracer<'_, '_> {
             let passed = self.passed(group, lane, distances[lane], Some((index, side)));
             let tint_here = object.passed(&object.surface_point(point, side)) * passed.unwrap_or(Rgb::ONE);
             group.sides[lane] = side.opposite();
-            group.cosines[lane] = ray.dir.dot(normal);
+            cosines[lane] = ray.dir.dot(normal);
             group.travelled[lane] += distances[lane];
             group.origin.set(lane, point);
             tint.set(lane, tint.get(lane) * tint_here);
             t_max[lane] -= distances[lane];
         }
-        group.errors = self.errors(&*object.shape, &group.travelled[..count], &group.cosines[..count]);
+        self.bound_errors(&*object.shape, &group.travelled[..count], &cosines[..count], &mut group.errors);
         group.origin_object = Some(index);
         self.depth += 1;
         self.walk(transmittance);

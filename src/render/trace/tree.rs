@@ -55,8 +55,8 @@ pub(super) struct OpenRay {
     pub dir: DVec3,
     /// The path length from the viewer to the origin, in world units.
     pub travelled: f64,
-    /// The cosine of the angle at which its predecessor hit the origin.
-    pub cosine: f64,
+    /// A bound on the error of the origin, in world units.
+    pub error: f64,
     /// The index of the object that it leaves.
     pub object: u32,
     /// The side of it that it leaves.
@@ -111,7 +111,7 @@ impl OpenRay {
             origin: DVec3::ZERO,
             dir: DVec3::NEG_Z,
             travelled: 0.0,
-            cosine: 0.0,
+            error: 0.0,
             object: 0,
             side: Side::Outside,
             kind: RayKind::Primary,

@@ -67,6 +67,13 @@ impl Flat {
         (self.normal.dot(between), away_error, toward_error)
     }
 
+    /// Returns a bound of the error of a point's distance from the plane in `f64` arithmetic, in world units. It is large
+    /// for needles, and infinite where products underflow or overflow.
+    pub(super) fn offset_error(&self, at: DVec3) -> f64 {
+        let error = AWAY_ERROR * self.edges * largest(self.corners[0] - at) / self.size;
+        if error < MISS { error } else { MISS }
+    }
+
     /// Returns the bracket of a ray that leaves the face or may leave it, or `None` for any other ray.
     #[inline(always)]
     pub fn left(&self, ray: &Ray, leaving: Leaving, drift: RayError) -> Option<Bracket> {
@@ -78,10 +85,13 @@ impl Flat {
             let error = error + 4.0 * f64::EPSILON * ray.origin.abs().max_element();
             (bounds.low - error).cmple(ray.origin).all() && ray.origin.cmple(bounds.high + error).all()
         };
-        if away.abs() + away_error <= offset(leaving.least) && holds(leaving.least) {
+        if away.abs() + away_error <= offset(leaving.least)
+            && holds(leaving.least)
+            && distance_to(self.corners, ray.origin) <= leaving.least
+        {
             return Some(Bracket::MISS);
         }
-        let largest = largest(self.corners[0] - ray.origin);
+        let largest = largest(self.corners[0] - ray.origin).max(ray.origin.abs().max_element());
         let farthest = (leaving.most + 4.0 * f64::EPSILON * 3.0 * largest) * (self.size + toward_error);
         (away.abs() - away_error <= farthest && holds(leaving.most)).then_some(Bracket::UNKNOWN)
     }

@@ -14,7 +14,7 @@ use std::cell::Cell;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_world::accuracy::NotClassic;
 use tabray_world::certify::{self, Enclosure, HitEnclosure, Precision};
-use tabray_world::coincidence::{CLOSE, close};
+use tabray_world::coincidence::{CLOSE, ROUNDING, close};
 use tabray_world::geometry::aabb::{Aabb, larger};
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange};
 use tabray_world::geometry::sight::Sight;
@@ -283,6 +283,19 @@ impl Surface {
             first => first,
         };
         (first, face)
+    }
+
+    /// Returns the distance, in world units, within which a ray that starts on the surface leaves faces. It starts on
+    /// some face, so where its rounded origin is farther from all of them than the bounds of its error say, it leaves
+    /// the nearest one. `nearest` returns the distance of that.
+    pub(super) fn leaves(&self, origin_error: f64, nearest: impl FnOnce() -> f64) -> f64 {
+        let (error, nearest) = (origin_error.max(self.least_error()), nearest());
+        if nearest <= error { error } else { 2.0 * nearest }
+    }
+
+    /// Returns a bound of the rounding error of a hit point at the viewer, in world units.
+    pub(super) fn least_error(&self) -> f64 {
+        ROUNDING * self.max_coordinate()
     }
 
     /// Returns the exact triangle of a face.

@@ -1,6 +1,6 @@
 //! The faces of a mesh near a point.
 
-use super::face::distance_to;
+use super::face::{Flat, distance_to};
 use super::surface::Surface;
 use crate::triangle::Triangle;
 use glam::DVec3;
@@ -117,5 +117,9 @@ impl Surface {
 pub(super) fn is_on_surface<A: NotClassic>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
     let Aabb { low, high } = Aabb::around(&triangle.corners);
     let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
-    (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.is_on_surface(at, error)
+    (low - beside).cmple(at).all()
+        && at.cmple(high + beside).all()
+        && triangle.plane.is_on_surface(at, error)
+        // A point of the plane beside the face is not on it, even where the box around the face contains it.
+        && distance_to(triangle.corners, at) <= beside + Flat::of(triangle.corners).offset_error(at)
 }

@@ -17,7 +17,7 @@ use tabray_world::certify::{
     Assumption, Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, Precision, Premise,
     ProofMethods,
 };
-use tabray_world::coincidence::{CLOSE, ROUNDING};
+use tabray_world::coincidence::CLOSE;
 use tabray_world::geometry::aabb::{Aabb, SLACK};
 use tabray_world::geometry::facet::Facet;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
@@ -57,7 +57,7 @@ impl<A: NotClassic> Mesh<A> {
         match origin_side {
             // The error is at least that of a hit point at the viewer.
             Some(_) => {
-                let least = ROUNDING * self.surface.max_coordinate();
+                let least = self.surface.least_error();
                 Leaving { least, most: origin_error.max(least) }
             }
             None if origin_error > 0.0 => Leaving { least: -1.0, most: origin_error },
@@ -86,9 +86,7 @@ impl<A: NotClassic> Hittable for Mesh<A> {
         if !self.can_hit_itself {
             return MISS;
         }
-        // The ray starts at the nearest face, however far this is from the rounded origin.
-        let nearest = 2.0 * self.surface.nearest(ray.origin).0;
-        let leaves = range.origin_error.max(ROUNDING * self.surface.max_coordinate()).max(nearest);
+        let leaves = self.surface.leaves(range.origin_error, || self.surface.nearest(ray.origin).0);
         self.surface.distance::<A>(ray, range, leaves)
     }
 

@@ -114,6 +114,27 @@ proptest! {
         }
     }
 
+    /// The box around a face that is not parallel to two axes contains much of the plane around it.
+    #[test]
+    fn points_beside_a_face_in_its_plane_are_not_on_the_mesh(
+        bumps in prop::collection::vec(0.6..1.5, 1..9),
+        (rows, size, rotation) in (3..9_u32, prop_oneof![Just(1.0), Just(1e-6), Just(1e6)], -180.0..180.0),
+        beside in prop::collection::vec((any::<prop::sample::Index>(), 0.0..1.0, 0.01..0.5), 40),
+    ) {
+        let placement = ToWorld::new(DVec3::splat(size), Rotation::Angles(DVec3::splat(rotation)), DVec3::ZERO);
+        let surface = Arc::new(surface(closed(&bumps, rows), &placement));
+        let shape = shape(&surface);
+        for (index, part, out) in beside {
+            let [a, b, c] = surface.corners(index.index(surface.face_count()));
+            let at = a.lerp(b, part) + out * (a.lerp(b, part) - c);
+            let (nearest, error) = (surface.nearest(at).0, 1e-12 * at.length());
+            // Other faces may be as near as the error.
+            if nearest > 100.0 * error {
+                prop_assert!(!shape.is_on_surface(at, error), "{at} is {nearest} from the mesh");
+            }
+        }
+    }
+
     #[test]
     fn hits_are_those_of_the_triangles(
         bumps in prop::collection::vec(0.3..2.0, 1..9),

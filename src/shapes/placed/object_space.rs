@@ -31,7 +31,19 @@ pub fn in_object_space<const N: usize, T>(
     } else {
         0.0
     };
-    let own = RayPacket::new(origin.view(count), dir.view(count), origin_error).leaving(rays.leaving);
+    let mut errors = [0.0; N];
+    let errors = match rays.origin_errors {
+        [] => &[],
+        _ => {
+            for lane in 0..count {
+                errors[lane] = placed.object_error(rays.origin.get(lane), rays.error(lane));
+            }
+            &errors[..count]
+        }
+    };
+    let own = RayPacket::new(origin.view(count), dir.view(count), origin_error)
+        .with_errors(errors)
+        .leaving(rays.leaving);
     act(RayPacket { drift, ..own }, own_ends, lengths)
 }
 

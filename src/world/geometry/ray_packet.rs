@@ -33,6 +33,8 @@ pub struct RayPacket<'r> {
     /// The maximum distance between an origin and the exact point that it was rounded from, in world units. It is 0 for
     /// camera rays.
     pub origin_error: f64,
+    /// That distance for each ray, or at least a bound of it; empty where `origin_error` counts for all.
+    pub origin_errors: &'r [f64],
     /// The maximum distance between each ray and the rays that it stands for.
     pub drift: RayError,
     /// The side of the shape that each ray leaves, if the rays leave the shape that they are tested against.
@@ -43,7 +45,14 @@ impl<'r> RayPacket<'r> {
     /// Makes a packet of rays that stand for themselves and leave nothing.
     #[inline(always)]
     pub fn new(origin: View<'r>, dir: View<'r>, origin_error: f64) -> Self {
-        Self { origin, dir, origin_error, drift: RayError::NONE, leaving: None }
+        Self { origin, dir, origin_error, origin_errors: &[], drift: RayError::NONE, leaving: None }
+    }
+
+    /// Returns the rays, with a bound of the error of each origin. There must be as many bounds as rays, or none, and
+    /// none may be larger than `origin_error`.
+    #[inline(always)]
+    pub fn with_errors(self, origin_errors: &'r [f64]) -> Self {
+        Self { origin_errors, ..self }
     }
 
     /// Returns the rays, leaving a shape to these sides. There must be at least as many sides as rays.
@@ -58,10 +67,16 @@ impl<'r> RayPacket<'r> {
         self.leaving.map(|sides| sides[index])
     }
 
+    /// Returns a bound of the error of a ray's origin, in world units. It does not depend on the other rays.
+    #[inline(always)]
+    pub fn error(&self, index: usize) -> f64 {
+        self.origin_errors.get(index).copied().unwrap_or(self.origin_error)
+    }
+
     /// Returns the range of a ray that ends at a distance.
     #[inline(always)]
     pub fn range(&self, index: usize, far: f64) -> RayRange {
-        let (origin_side, origin_error) = (self.side(index), self.origin_error);
+        let (origin_side, origin_error) = (self.side(index), self.error(index));
         RayRange { far, origin_side, origin_error, ..RayRange::ALL }
     }
 
@@ -98,15 +113,17 @@ impl<'r> RayPacket<'r> {
     /// Returns the first `count` rays.
     #[inline(always)]
     pub fn first(&self, count: usize) -> Self {
-        let leaving = self.leaving.map(|sides| &sides[..count]);
-        Self { origin: self.origin.first(count), dir: self.dir.first(count), leaving, ..*self }
+        self.part(0..count)
     }
 
     /// Returns the rays in a range of indices.
     #[inline(always)]
     pub fn part(&self, range: Range<usize>) -> Self {
         let leaving = self.leaving.map(|sides| &sides[range.clone()]);
-        Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range), leaving, ..*self }
+        let origin_errors =
+            if self.origin_errors.is_empty() { &[] } else { &self.origin_errors[range.clone()] };
+        let (origin, dir) = (self.origin.part(range.clone()), self.dir.part(range));
+        Self { origin, dir, leaving, origin_errors, ..*self }
     }
 }
 

@@ -103,6 +103,10 @@ pub trait ScalarIntersect: Send + Sync {
     /// Whether rays that lie close together are searched together, by [`t_bounds_each`](Self::t_bounds_each).
     const BY_BEAMS: bool = false;
 
+    /// Whether a larger error of a ray's origin only widens its bracket. Where it may move a hit, each ray of a packet
+    /// counts with its own error and not with the largest, so that its hit does not depend on the other rays.
+    const IS_BRACKET: bool = false;
+
     /// Computes a bracket of the first hit of each of up to [`BEAM`](crate::geometry::ray_packet::BEAM) rays, each in
     /// its own range.
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
@@ -154,6 +158,8 @@ impl<T: Bracketed, P> ScalarIntersect for Shape<T, ByBracket, P> {
     type Author = T;
 
     const BY_BEAMS: bool = T::BY_BEAMS;
+
+    const IS_BRACKET: bool = true;
 
     fn t_bounds_each(&self, rays: RayPacket, ranges: &[RayRange], brackets: &mut [Bracket]) {
         self.shape.t_bounds_each(rays, ranges, brackets);
@@ -426,7 +432,8 @@ impl<T: ScalarIntersect> Brackets for LeavingBounds<'_, T> {
         if !self.can_hit_itself.contain(origin_side) {
             return Bracket::MISS;
         }
-        let (origin_side, origin_error) = (Some(origin_side), self.rays.origin_error);
+        let origin_error = if T::IS_BRACKET { self.rays.origin_error } else { self.rays.error(lane) };
+        let origin_side = Some(origin_side);
         let ray = RayBall { ray: self.rays.get(lane), drift: self.rays.drift };
         self.shape.t_bounds(&ray, &RayRange { far, origin_side, origin_error, ..RayRange::ALL })
     }

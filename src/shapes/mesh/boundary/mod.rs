@@ -103,9 +103,8 @@ impl<A: NotClassic> Hittable for Boundary<A> {
         } else if !self.mesh.can_hit_itself {
             return MISS;
         } else {
-            // Like the mesh's own hits, the ray starts at the nearest face.
-            let nearest = 2.0 * surface.nearest_of(ray.origin, |face| !self.is_hidden(face)).0;
-            range.origin_error.max(ROUNDING * surface.max_coordinate()).max(nearest)
+            surface
+                .leaves(range.origin_error, || surface.nearest_of(ray.origin, |face| !self.is_hidden(face)).0)
         };
         let turns = surface.turns::<A>(ray, leaves).into_iter();
         turns.map(|turn| range.keep(turn.distance)).find(|distance| *distance < MISS).unwrap_or(MISS)
