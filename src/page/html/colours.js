@@ -30,3 +30,16 @@ const coloured = (line, first = 0, last = line.length) => {
   add('', at, line.length)
   return nodes
 }
+
+/// The lines of a text in their colours.
+const rows = (text) => text.split('\n').map((line) => {
+  const row = document.createElement('div')
+  row.append(...coloured(line))
+  return row
+})
+
+/// Keeps the ground of an editor behind its text.
+const scrollGround = () => {
+  const { scrollTop, scrollLeft } = $('#editor')
+  Object.assign($('#ground'), { scrollTop, scrollLeft })
+}

@@ -38,11 +38,6 @@ const drawGround = () => {
   scrollGround()
 }
 
-const scrollGround = () => {
-  ground.scrollTop = editor.scrollTop
-  ground.scrollLeft = editor.scrollLeft
-}
-
 /// Takes in the text of a scene, unless the user is writing.
 const write = (text) => { if (editor.value !== text && document.activeElement !== editor) showText(text) }
 

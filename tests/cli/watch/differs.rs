@@ -127,12 +127,17 @@ fn the_text_is_edited_on_the_page_and_saved_if_nobody_else_has() {
     let change = |from: &str, to: &str| {
         browser.run(&format!(
             "const box = document.querySelector('#editor'); box.value = box.value.replace('{from}', '{to}')
+             box.dispatchEvent(new Event('input'))
              document.querySelector('#save').click()"
         ));
     };
     let said = "document.querySelector('#editing span').textContent";
     change("radius 2", "raduis 2");
     browser.wait(&format!("{said} === 'nothing is written, because of errors'"));
+    // The text has its colours while it is changed.
+    let ground = "[...document.querySelectorAll('#ground div')].map((row) => row.textContent).join('\\n')";
+    browser.wait(&format!("{ground} === document.querySelector('#editor').value"));
+    browser.wait("document.querySelector('#ground .type').textContent === 'camera'");
     browser.wait(
         "document.querySelector('#unsaved:not([hidden])').textContent.includes('did you mean `radius`?')",
     );
@@ -151,7 +156,7 @@ fn the_text_is_edited_on_the_page_and_saved_if_nobody_else_has() {
     browser.wait(&format!("{said} === 'the scene has changed meanwhile: try again'"));
     assert_eq!(text(&watching), other);
     assert!(
-        browser.text("return document.querySelector('#editor:not([hidden])').value").contains("radius 1\n")
+        browser.text("return document.querySelector('#paper:not([hidden]) #editor').value").contains("radius 1\n")
     );
 }
 

@@ -4,17 +4,23 @@
 let original = ''
 
 const showEditor = (isOpen) => {
-  for (const part of ['#editor', '#save', '#leave']) $(part).hidden = !isOpen
+  for (const part of ['#paper', '#save', '#leave']) $(part).hidden = !isOpen
   for (const part of ['#text', '#edit']) $(part).hidden = isOpen
   $('#unsaved').hidden = true
 }
 
+const drawEdited = () => {
+  $('#ground').replaceChildren(...rows($('#editor').value))
+  scrollGround()
+}
+
 const edit = () => {
-  if (!$('#editor').hidden) return
+  if (!$('#paper').hidden) return
   selectTab($('#tab-text'))
   original = $('#editor').value = current
   sayEdited('')
   showEditor(true)
+  drawEdited()
   $('#editor').setSelectionRange(0, 0)
   $('#editor').focus()
 }
@@ -39,6 +45,8 @@ const save = async () => {
 $('#edit').addEventListener('click', edit)
 $('#save').addEventListener('click', save)
 $('#leave').addEventListener('click', () => { showEditor(false); sayEdited(''); $('#text').focus() })
+$('#editor').addEventListener('input', drawEdited)
+$('#editor').addEventListener('scroll', scrollGround)
 $('#editor').addEventListener('keydown', (event) => {
   if (event.key === 's' && (event.ctrlKey || event.metaKey)) { event.preventDefault(); save() }
   // A text that was changed is left by its button alone.

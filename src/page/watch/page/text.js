@@ -7,11 +7,7 @@ let current = ''
 
 const write = (text) => {
   current = text
-  $('#text').replaceChildren(...text.split('\n').map((line) => {
-    const row = document.createElement('div')
-    row.append(...coloured(visible(line)))
-    return row
-  }))
+  $('#text').replaceChildren(...rows(text.split('\n').map(visible).join('\n')))
 }
 
 // The first and the last line of the object that is explained.
