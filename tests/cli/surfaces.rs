@@ -92,6 +92,38 @@ fn a_mesh_needs_no_camera_and_tells_what_it_takes() {
 }
 
 #[test]
+fn an_open_surface_becomes_a_mesh_with_a_thickness() {
+    let folder = folder();
+    let scene = "material m { } disc d { material m  center 0 0 0  normal 0 1 0  radius 1 }
+        plane p { material m  normal 0 1 0  point 0 0 0 }";
+    fs::write(folder.path().join("a.ray"), scene).expect("written");
+    let made = |name: &str, more: &[&str]| {
+        outcome(tabray(&folder).args(["mesh", "a.ray", name, "-o", "a.stl"]).args(more))
+    };
+    for (name, more, said) in [
+        ("d", &[][..], "`d` encloses nothing: "),
+        ("d", &[], "; `--thickness` closes others"),
+        ("p", &["--thickness", "0.1"], "`p` has no end"),
+        (
+            "d",
+            &["--thickness", "0.1", "--error", "0.1"],
+            "an error of 0.1 is too large for a thickness of 0.1",
+        ),
+        ("d", &["--thickness", "0.001", "--max-memory", "64MiB"], "give an `--error` of about "),
+        ("d", &["--thickness", "1e-9"], "give a larger `--error`"),
+    ] {
+        let (status, _, err) = made(name, more);
+        assert!(status == 2 && err.contains(said), "{name} {more:?}: {err}");
+    }
+    let (status, _, err) = made("d", &["--thickness", "0.5", "--error", "0.1"]);
+    assert_eq!(status, 0, "{err}");
+    assert!(
+        err.contains("the distance of each point of the mesh from the surface is within 0.1 of 0.25"),
+        "{err}"
+    );
+}
+
+#[test]
 fn what_is_not_proven_of_how_a_mesh_is_connected_is_told_with_what_to_do() {
     let folder = folder();
     let scene = "material m { } box b { material m  center 0 0 0  size 1 1 1 }

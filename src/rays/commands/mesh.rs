@@ -1,6 +1,6 @@
 //! `tabray mesh`: writes an object of a scene as a closed mesh of triangles.
 
-use crate::surface_mesh::{Body, Event, Format, NoBody, NoMesh, mesh};
+use crate::surface_mesh::{Body, Event, Format, NoBody, NoMesh, Sheet, mesh};
 use glam::DVec3;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,8 @@ const LISTED: usize = 5;
 /// nodes of an algebraic surface.
 ///
 /// The object must be closed: an implicit, a surface of revolution, a solid, or a copy of one. If its box cuts an
-/// implicit, the faces of the box close it. The scene needs no camera.
+/// implicit, the faces of the box close it. With `--thickness`, the surface may be open, or parametric: the mesh is then
+/// that of all points within half of the thickness of it. The scene needs no camera.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -42,6 +43,9 @@ pub struct Args {
     /// The largest distance between the mesh and the surface, in world units; by default a 200th of the object's size
     #[arg(short, long, value_name = "E", value_parser = above_0)]
     error: Option<f64>,
+    /// Give the surface this thickness, in world units; its middle is the surface
+    #[arg(long, value_name = "T", value_parser = above_0)]
+    thickness: Option<f64>,
     /// The format, whatever the file name
     #[arg(long, value_name = "FORMAT", value_parser = by_name::<Format>())]
     format: Option<Format>,
@@ -84,10 +88,30 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     })?;
     let model = input::print_warnings(args.scene.read()?.load_for_rays(registry, None))?.model;
     output::refuse_source_by(output, "the mesh", &args.scene.path, &model)?;
-    let body = Body::of(&model, name).map_err(|fault| no_body(&args.scene.path, &shown(name), fault))?;
-    let size = 2.0 * body.bounds.half_size().max_element();
-    let error = args.error.unwrap_or_else(|| short(FRACTION * size).parse().unwrap_or(size));
-    let memory = memory::left();
+    let name = &shown(name);
+    let refused = |fault| no_body(&args.scene.path, name, fault);
+    let size = 2.0 * Body::bounds_of(&model, &args.name).map_err(refused)?.half_size().max_element();
+    let error = args.error.unwrap_or_else(|| {
+        let most = args.thickness.map_or(f64::INFINITY, |thickness| thickness / 8.0);
+        let error = most.min(FRACTION * size);
+        short(error).parse().unwrap_or(error)
+    });
+    interrupt::catch(InterruptAction::Exit("no mesh is written"))?;
+    let (memory, renderer) = (memory::left(), args.threads.renderer()?);
+    let (body, share) = match args.thickness {
+        None => (Body::of(&model, &args.name).map_err(refused)?, error),
+        Some(thickness) if error >= thickness / 2.0 => {
+            let [error, thickness] = [error, thickness].map(shortest);
+            let message = format!("an error of {error} is too large for a thickness of {thickness}");
+            return Err(Failure::usage(message).help("give an `--error` of less than half of the thickness"));
+        }
+        // A part of the error is for the distance from the surface, and the rest for the triangles.
+        Some(thickness) => {
+            let (sheet, share) = (Sheet::of(&model, &args.name).map_err(refused)?, error / 2.0);
+            let body = renderer.run(|| sheet.thickened(thickness, share, memory));
+            (body.map_err(|fault| no_mesh(name, (error, share), &fault))?, share)
+        }
+    };
     let progress = OnceLock::new();
     let tell = |event| match event {
         Event::Expected { triangles, steps } => {
@@ -99,10 +123,9 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         }
         Event::Done(steps) => progress.get().into_iter().for_each(|progress| progress.advance(steps)),
     };
-    interrupt::catch(InterruptAction::Exit("no mesh is written"))?;
-    let made = args.threads.renderer()?.run(|| mesh(&body, error, memory, &tell));
+    let made = renderer.run(|| mesh(&body, share, memory, &tell));
     progress.get().into_iter().for_each(Progress::end);
-    let made = made.map_err(|fault| no_mesh(&shown(name), error, &fault))?;
+    let made = made.map_err(|fault| no_mesh(name, (error, share), &fault))?;
     let mut out = BufWriter::new(Output::open(output)?);
     let written = format.write(&made, name, &mut out);
     output::finished(output, written, out)?;
@@ -143,10 +166,17 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         );
     }
     if made.far.is_empty() {
-        messages::note(&format!(
-            "each point of the mesh is within {} of the surface, and each point of the surface of the mesh",
-            shortest(error)
-        ));
+        messages::note(&match args.thickness {
+            None => format!(
+                "each point of the mesh is within {} of the surface, and each point of the surface of the mesh",
+                shortest(error)
+            ),
+            Some(thickness) => format!(
+                "the distance of each point of the mesh from the surface is within {} of {}",
+                shortest(error),
+                shortest(thickness / 2.0)
+            ),
+        });
         return Ok(());
     }
     Err(Failure::Failed(format!(
@@ -190,11 +220,17 @@ fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
         }
         NoBody::Open(why) => (
             format!("`{name}` encloses nothing: {why}"),
-            "a mesh is made of closed objects: a sphere, a solid, an `implicit` within its box".to_owned(),
+            "a mesh is made of closed objects: a sphere, a solid, an `implicit` within its box; `--thickness` closes \
+             others"
+                .to_owned(),
         ),
         NoBody::Unbounded => {
             (format!("`{name}` has no end"), "an `intersection` with a box has one".to_owned())
         }
+        NoBody::Unproven => (
+            format!("`{name}` has no equation, so nothing is proven about its surface"),
+            "objects of other types can be made thick".to_owned(),
+        ),
         NoBody::Mesh => (
             format!("`{name}` is a mesh already, or may be made of one"),
             "intervals cannot tell the inside of a mesh: leave it out of the scene".to_owned(),
@@ -203,8 +239,9 @@ fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
     Failure::usage(message).help(help)
 }
 
-fn no_mesh(name: &str, error: f64, fault: &NoMesh) -> Failure {
-    let error = shortest(error);
+/// Says why there is no mesh. `share` is the part of the error that the work had.
+fn no_mesh(name: &str, (error, share): (f64, f64), fault: &NoMesh) -> Failure {
+    let (error, parts) = (shortest(error), error / share);
     let (message, help) = match fault {
         NoMesh::Empty => (
             format!("nothing of `{name}` is larger than the error of {error}"),
@@ -212,7 +249,7 @@ fn no_mesh(name: &str, error: f64, fault: &NoMesh) -> Failure {
         ),
         NoMesh::TooMany(least) => (
             format!("a mesh of `{name}` within {error} has too many triangles{}", memory::beyond_chosen()),
-            format!("give an `--error` of about {} or more", short(*least)),
+            format!("give an `--error` of about {} or more", short(parts * least)),
         ),
         NoMesh::TooFine => (
             format!("an error of {error} is too small for the digits of mesh files"),

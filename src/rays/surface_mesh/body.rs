@@ -1,5 +1,6 @@
 //! The body that an object of a scene encloses.
 
+use super::thick::Thick;
 use glam::DVec3;
 use tabray_core::geometry::Aabb;
 use tabray_core::scene::Model;
@@ -14,9 +15,17 @@ use tabray_exact::scalar::{dot, per_axis};
 /// The margin by which cells are enlarged, as a fraction of the numbers that they are made of: rounding is less.
 const MARGIN: f64 = 1e-12;
 
-/// The inside of an object.
+/// What lies inside of a body.
+enum Inside<'m> {
+    /// The inside of a closed shape.
+    Of(&'m AnyShape),
+    /// The surroundings of a surface.
+    Near(Thick),
+}
+
+/// The inside of an object, or the surroundings of its surface.
 pub struct Body<'m> {
-    shape: &'m AnyShape,
+    inside: Inside<'m>,
     /// A box around it.
     pub bounds: Aabb,
     /// Whether its surface has edges that gradients do not show: it is a solid, or is closed by the faces of its box.
@@ -25,6 +34,8 @@ pub struct Body<'m> {
     has_faces: bool,
     /// Whether the faces of its box close it.
     pub is_capped: bool,
+    /// The places where it is not known whether there is a surface: low and high corners.
+    pub(super) doubtful: Vec<[DVec3; 2]>,
 }
 
 /// The reason why an object encloses nothing.
@@ -36,29 +47,44 @@ pub enum NoBody {
     Open(String),
     /// It has no bounds.
     Unbounded,
+    /// Nothing is proven about its surface.
+    Unproven,
     /// It is a mesh already, or made of one.
     Mesh,
 }
 
+/// Returns the objects of a name, at least one, and a box around them.
+pub(super) fn named<'m>(model: &'m Model, name: &str) -> Result<(Vec<&'m Object>, Aabb), NoBody> {
+    let objects: Vec<_> = model.objects.iter().filter(|object| object.args.name() == name).collect();
+    if objects.is_empty() {
+        let mut names: Vec<_> = model.objects.iter().map(|object| object.args.name().to_owned()).collect();
+        names.dedup();
+        return Err(NoBody::Unknown(names));
+    }
+    let mut bounds = Aabb::EMPTY;
+    for object in &objects {
+        bounds = bounds.and(&object.shape.facts().bounds.ok_or(NoBody::Unbounded)?);
+    }
+    Ok((objects, bounds))
+}
+
 impl<'m> Body<'m> {
+    /// Returns a box around an object of a scene.
+    ///
+    /// # Errors
+    /// Returns why there is none.
+    pub fn bounds_of(model: &Model, name: &str) -> Result<Aabb, NoBody> {
+        Ok(named(model, name)?.1)
+    }
+
     /// Returns the body of an object of a scene.
     ///
     /// # Errors
     /// Returns why the object has no body.
     pub fn of(model: &'m Model, name: &str) -> Result<Self, NoBody> {
-        let named = |object: &&Object| object.args.name() == name;
-        let objects: Vec<_> = model.objects.iter().filter(named).collect();
-        let Some(first) = objects.first() else {
-            let mut names: Vec<_> =
-                model.objects.iter().map(|object| object.args.name().to_owned()).collect();
-            names.dedup();
-            return Err(NoBody::Unknown(names));
-        };
+        let (objects, bounds) = named(model, name)?;
+        let first = objects[0];
         let shape = &first.shape;
-        let mut bounds = Aabb::EMPTY;
-        for object in &objects {
-            bounds = bounds.and(&object.shape.facts().bounds.ok_or(NoBody::Unbounded)?);
-        }
         // Each part of a solid is an object of its own, and knows the whole.
         let is_solid = shape.is_of_solid();
         let why = shape.why_not_closed().filter(|_| !is_solid);
@@ -75,18 +101,33 @@ impl<'m> Body<'m> {
         // Of a shape of faces, proofs know the equation of one.
         let has_faces = |proven: &dyn ProofMethods| HitProofs::<f64>::face_of(proven, 0).is_some();
         let has_faces = shape.proven().is_none_or(has_faces);
-        Ok(Self { shape, bounds, has_edges: is_solid || is_capped || has_faces, has_faces, is_capped })
+        let has_edges = is_solid || is_capped || has_faces;
+        let inside = Inside::Of(shape);
+        Ok(Self { inside, bounds, has_edges, has_faces, is_capped, doubtful: Vec::new() })
+    }
+
+    /// Returns the body of the points near a surface, which lie in a box.
+    pub(super) fn near(thick: Thick, bounds: Aabb, doubtful: Vec<[DVec3; 2]>) -> Self {
+        let inside = Inside::Near(thick);
+        // Its border has edges wherever the surface has.
+        Self { inside, bounds, has_edges: true, has_faces: true, is_capped: false, doubtful }
     }
 
     /// Tells whether a cube lies inside or outside; `None` where the surface may pass through it.
     pub fn contains(&self, middle: DVec3, half: f64) -> Option<bool> {
         let margin = MARGIN * (middle.abs().max_element() + half);
-        self.shape.contains(middle, half + margin)
+        match &self.inside {
+            Inside::Of(shape) => shape.contains(middle, half + margin),
+            Inside::Near(thick) => thick.contains(middle, half + margin),
+        }
     }
 
     /// Tells whether a point lies inside or outside; `None` on the surface, or too near to it to tell.
     pub fn contains_point(&self, at: DVec3) -> Option<bool> {
-        self.shape.contains(at, 0.0)
+        match &self.inside {
+            Inside::Of(shape) => shape.contains(at, 0.0),
+            Inside::Near(thick) => thick.contains(at, 0.0),
+        }
     }
 
     /// Tells whether a triangle lies inside or outside, by the mean value theorem; `None` where that does not tell.
@@ -98,16 +139,32 @@ impl<'m> Body<'m> {
         let gradient = self.gradient(per_axis(|axis| about(low[axis]).hull(about(high[axis]))))?;
         let [a, b, c] = corners.map(|at| dot(gradient, per_axis(|axis| about(at[axis] - middle[axis]))));
         let point = middle.to_array().map(|at| Dual::fixed(Interval::point(at)));
-        let value = HitProofs::<f64>::slope(self.shape.proven()?, point, 0).value + a.hull(b).hull(c);
+        let value = HitProofs::<f64>::slope(self.proven()?, point, 0).value + a.hull(b).hull(c);
         let is_inside = value.high < 0.0;
         // The formula does not tell where the shape ends.
         (!value.has_zero() && self.contains_point(middle) == Some(is_inside)).then_some(is_inside)
     }
 
+    /// Returns the surface whose surroundings it is.
+    pub(super) fn thick(&self) -> Option<&Thick> {
+        match &self.inside {
+            Inside::Of(_) => None,
+            Inside::Near(thick) => Some(thick),
+        }
+    }
+
+    /// Returns the proofs about the shape whose inside it is.
+    fn proven(&self) -> Option<&dyn ProofMethods> {
+        match self.inside {
+            Inside::Of(shape) => shape.proven(),
+            Inside::Near(_) => None,
+        }
+    }
+
     /// Encloses the gradients of the equation in a box; `None` where the surface has edges that they do not show, and
     /// where they are unbounded.
     fn gradient(&self, at: [Interval; 3]) -> Option<[Interval; 3]> {
-        let proven = self.shape.proven().filter(|_| !self.has_edges)?;
+        let proven = self.proven().filter(|_| !self.has_edges)?;
         let gradient: [Interval; 3] = gradient(proven, at, 0);
         gradient.iter().all(|of| of.is_bounded()).then_some(gradient)
     }
@@ -121,7 +178,7 @@ impl<'m> Body<'m> {
     /// Tells whether a cube may have a point of the surface where the gradient is 0, as at a node. Of a solid, this is
     /// asked of its first part.
     pub fn may_be_singular(&self, middle: DVec3, half: f64) -> bool {
-        let Some(proven) = self.shape.proven().filter(|_| !self.has_faces) else { return false };
+        let Some(proven) = self.proven().filter(|_| !self.has_faces) else { return false };
         let at = middle.to_array().map(|at| Interval { low: at - half, high: at + half });
         let gradient: [Interval; 3] = gradient(proven, at, 0);
         gradient.iter().all(|of| of.is_bounded() && of.has_zero())

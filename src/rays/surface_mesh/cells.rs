@@ -1,8 +1,8 @@
 //! The cells that a surface may cross: those of a cube that is repeatedly halved along each axis.
 
 use super::Done;
-use super::body::Body;
 use glam::DVec3;
+use tabray_core::geometry::Aabb;
 use tabray_core::parallel;
 
 /// The size of the cube, in sizes of the body.
@@ -43,12 +43,22 @@ pub fn key([x, y, z]: Index) -> u64 {
 }
 
 impl Cells {
-    /// Makes one cell around a body.
-    pub fn enclosing(body: &Body<'_>) -> Self {
-        let half = body.bounds.half_size().max_element();
-        let middle = body.bounds.middle() + half * BESIDE;
+    /// Makes one cell around a box.
+    pub fn enclosing(bounds: &Aabb) -> Self {
+        let half = bounds.half_size().max_element();
+        let middle = bounds.middle() + half * BESIDE;
         let size = 2.0 * ROOM * half;
         Self { low: middle - size / 2.0, size, halvings: 0, list: vec![[0; 3]] }
+    }
+
+    /// Enlarges the cube, which has not been halved, so that the diagonal of a cell is this long after some number of
+    /// halvings. Returns that number.
+    pub fn fit(&mut self, diagonal: f64) -> u32 {
+        let halvings = self.halvings_to(diagonal);
+        let middle = self.low + self.size / 2.0;
+        self.size = libm::scalbn(diagonal / 3f64.sqrt(), halvings as i32);
+        self.low = middle - self.size / 2.0;
+        halvings
     }
 
     /// Returns the number of times that the cube was halved.
@@ -107,19 +117,24 @@ impl Cells {
         self.list.binary_search_by_key(&key(cell), |known| key(*known)).ok()
     }
 
-    /// Cuts each cell into eight, and keeps those that the surface may cross.
+    /// Cuts each cell into eight, and keeps those that the surface may cross, as told by a function of the middle of a
+    /// cell and half of its side.
     ///
     /// # Errors
     /// If these are more than `most`; the cells then stay as they are.
-    pub fn halve(&mut self, body: &Body<'_>, most: usize, done: Done) -> Result<(), ()> {
+    pub fn halve(
+        &mut self,
+        may_be_crossed: &(dyn Fn(DVec3, f64) -> bool + Sync),
+        most: usize,
+        done: Done,
+    ) -> Result<(), ()> {
         let half = self.side() / 4.0;
         let low = self.low;
         let halves = |cell: Index| (0..8).map(move |part| of_eight(cell.map(|index| 2 * index), part));
-        let may_be_crossed =
-            |cell: &Index| body.contains(low + 2.0 * half * (point(*cell) + 0.5), half).is_none();
+        let is_kept = |cell: &Index| may_be_crossed(low + 2.0 * half * (point(*cell) + 0.5), half);
         let mut list = parallel::map_ranges(self.list.len(), MANY, &|range| {
             done(range.len());
-            self.list[range].iter().flat_map(|cell| halves(*cell)).filter(may_be_crossed).collect()
+            self.list[range].iter().flat_map(|cell| halves(*cell)).filter(is_kept).collect()
         });
         if list.len() > most {
             return Err(());

@@ -19,11 +19,13 @@ mod merge;
 mod proof;
 #[cfg(test)]
 mod tests;
+mod thick;
 mod triangles;
 
 pub use body::{Body, NoBody};
 pub use closed::SurfaceMesh;
 pub use file::Format;
+pub use thick::Sheet;
 
 use cells::Cells;
 use glam::DVec3;
@@ -57,6 +59,15 @@ pub enum NoMesh {
     Open,
 }
 
+/// About how many vertices each cell has that a surface crosses.
+const VERTICES: usize = 3;
+
+/// The number of cells of which a mesh takes a noticeable time.
+const MANY_CELLS: usize = 1 << 14;
+
+/// The part of an error that remains for triangles whose corners are a little off the surface.
+const MOST_OF: f64 = 0.99;
+
 /// What is told while a mesh is made.
 #[derive(Clone, Copy, Debug)]
 pub enum Event {
@@ -87,15 +98,36 @@ pub fn mesh(
     tell: &(dyn Fn(Event) + Sync),
 ) -> Result<SurfaceMesh, NoMesh> {
     let most = memory.map_or(MAX_CELLS, |bytes| MAX_CELLS.min((bytes / CELL) as usize));
-    let mut cells = Cells::enclosing(body);
+    let mut cells = Cells::enclosing(&body.bounds);
+    let may_be_crossed = |middle: DVec3, half: f64| body.contains(middle, half).is_none();
     let last = cells.halvings_to(error);
     if last > MAX_HALVINGS {
         return Err(NoMesh::TooFine);
     }
     let last = last.max(MIN_HALVINGS);
     let done = |steps: usize| tell(Event::Done(steps));
+    if body.thick().is_some() {
+        // No point of a triangle is farther from a corner than in one with equal sides, and the distance that bounds the
+        // body changes by no more.
+        let last = cells.fit(MOST_OF * 3f64.sqrt() * error / 2.0);
+        while cells.halvings() < last {
+            cells
+                .halve(&may_be_crossed, most, &done)
+                .map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
+        }
+        if cells.list.len() > MANY_CELLS {
+            let vertices = VERTICES * cells.list.len();
+            tell(Event::Expected { triangles: 2 * vertices, steps: vertices * (1 + ROUNDS as usize) });
+        }
+        let triangles = Triangles::of(&cells, body, &done);
+        if triangles.faces.is_empty() {
+            return Err(NoMesh::Empty);
+        }
+        let far = proof::large(&cells, &triangles, error / 2.0);
+        return finished(&cells, triangles, body, (error, far), None, &done);
+    }
     loop {
-        cells.halve(body, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
+        cells.halve(&may_be_crossed, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
         let now = cells.halvings();
         if now < MIN_HALVINGS {
             continue;
@@ -170,10 +202,11 @@ fn finished(
     if !triangles.is_closed() {
         return Err(NoMesh::Open);
     }
-    let places = |of: Vec<usize>| of.into_iter().map(|cell| cells.cube(cell)).collect();
+    let places = |of: Vec<usize>| of.into_iter().map(|cell| cells.cube(cell)).collect::<Vec<_>>();
     let Triangles { vertices, faces, .. } = triangles;
     let vertices = vertices.into_iter().map(|vertex| vertex.at).collect();
-    let (far, tangled) = (places(far), tangled.map(places));
+    let (mut far, tangled) = (places(far), tangled.map(places));
+    far.extend_from_slice(&body.doubtful);
     Ok(SurfaceMesh {
         vertices,
         faces,

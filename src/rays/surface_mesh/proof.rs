@@ -60,6 +60,12 @@ pub fn far(
     places(&|cell| off.binary_search(cell).is_ok() || is_bare(cell, slopes.as_deref()))
 }
 
+/// Finds the cells with triangles that have points farther from all of their corners than the error.
+pub fn large(cells: &Cells, triangles: &Triangles, error: f64) -> Vec<usize> {
+    let is_large = |face: u32| outward(triangles, face as usize, error).is_some();
+    (0..cells.list.len()).filter(|cell| triangles.of_cells[*cell].clone().any(is_large)).collect()
+}
+
 /// Returns cells and those around them that hold the triangles which their proofs may name.
 pub fn beside(cells: &Cells, mut of: Vec<usize>) -> Vec<usize> {
     for _ in 0..=FARTHEST {
@@ -134,7 +140,7 @@ fn singular_in(body: &Body<'_>, middle: DVec3, half: f64, halvings: u32) -> Opti
 }
 
 /// Returns the middles of the eight cubes that are half as large as a cube.
-fn eighths(middle: DVec3, half: f64) -> impl Iterator<Item = DVec3> {
+pub fn eighths(middle: DVec3, half: f64) -> impl Iterator<Item = DVec3> {
     (0..8u32).map(move |part| {
         let sign = |bit: u32| if part >> bit & 1 == 0 { -0.5 } else { 0.5 };
         middle + half * DVec3::new(sign(0), sign(1), sign(2))

@@ -35,7 +35,19 @@ const SOLID: &str = "box cube { material m  center 0 0 0  size 2 2 2 }
 fn meshed(objects: &str, error: f64) -> SurfaceMesh {
     let model = model(objects);
     let body = Body::of(&model, "a").expect("a closed object");
-    let made = mesh(&body, error, None, &|_| ()).expect("a mesh");
+    closed(mesh(&body, error, None, &|_| ()).expect("a mesh"))
+}
+
+/// Makes the mesh of the surface of the object `a` with a thickness; half of the error is for either step.
+fn thickened(objects: &str, thickness: f64, error: f64) -> SurfaceMesh {
+    let model = model(objects);
+    let sheet = Sheet::of(&model, "a").expect("an object with an equation");
+    let body = sheet.thickened(thickness, error / 2.0, None).expect("a body");
+    closed(mesh(&body, error / 2.0, None, &|_| ()).expect("a mesh"))
+}
+
+/// Returns a mesh, after its edges are counted.
+fn closed(made: SurfaceMesh) -> SurfaceMesh {
     let mut edges = std::collections::BTreeMap::new();
     for [a, b, c] in &made.faces {
         for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -49,9 +61,11 @@ fn meshed(objects: &str, error: f64) -> SurfaceMesh {
 
 /// The triangles between corners of cells of at most this side.
 fn before_merging(body: &Body<'_>, side: f64) -> Triangles {
-    let mut cells = Cells::enclosing(body);
+    let mut cells = Cells::enclosing(&body.bounds);
     while cells.side() > side {
-        cells.halve(body, usize::MAX, &|_| ()).expect("any number of cells");
+        cells
+            .halve(&|middle, half| body.contains(middle, half).is_none(), usize::MAX, &|_| ())
+            .expect("any number of cells");
     }
     Triangles::of(&cells, body, &|_| ())
 }
@@ -138,8 +152,12 @@ fn nodes_are_named_where_parts_meet() {
 fn what_is_moved_off_the_surface_is_found() {
     let (model, error) = (model(BALL), 0.01);
     let body = Body::of(&model, "a").expect("a closed object");
-    let mut cells = Cells::enclosing(&body);
-    (0..4).for_each(|_| cells.halve(&body, usize::MAX, &|_| ()).expect("any number of cells"));
+    let mut cells = Cells::enclosing(&body.bounds);
+    (0..4).for_each(|_| {
+        cells
+            .halve(&|middle, half| body.contains(middle, half).is_none(), usize::MAX, &|_| ())
+            .expect("any number of cells")
+    });
     let mut triangles = Triangles::of(&cells, &body, &|_| ());
     let far = |triangles: &Triangles| proof::far(&cells, triangles, &body, (error, true), &|_| ());
     assert!(far(&triangles).is_empty());
@@ -205,6 +223,47 @@ fn thin_sheets_do_not_cross() {
     merge::merge(&mut new, &fixed, limit, &|_| ());
     assert!(crossed(&old) == 0 && crossed(&new) > 0, "{}", crossed(&new));
     assert_eq!(crossed(&merged(&old, fixed, limit, &|_| ())), 0);
+}
+
+#[test]
+fn a_disc_with_a_thickness_is_closed_and_has_it() {
+    let (half, error) = (0.2, 0.08);
+    let made = thickened("disc a { material m  center 1 2 3  normal 0 0 1  radius 1 }", 2.0 * half, error);
+    assert!(made.far.is_empty(), "{:?}", made.far.first());
+    assert_eq!(characteristic(&made), 2);
+    for at in samples(&made) {
+        let DVec3 { x, y, z } = at - DVec3::new(1.0, 2.0, 3.0);
+        let distance = libm::hypot((libm::hypot(x, y) - 1.0).max(0.0), z);
+        assert!((distance - half).abs() <= error, "{at} is {distance} from the disc");
+    }
+    // Pappus' theorem gives what lies beyond the rim.
+    let pi = std::f64::consts::PI;
+    let volume = pi * 2.0 * half + pi * pi * half * half + 4.0 / 3.0 * pi * half.powi(3);
+    assert!((made.volume() - volume).abs() < 0.03 * volume, "{} of {volume}", made.volume());
+}
+
+#[test]
+fn open_surfaces_with_a_thickness_end_where_they_end() {
+    let saddle = "x^3 - 3*x*y^2 - z";
+    let ball = "sphere ball { material m  center 0 0 0  radius 0.8 }";
+    let (half, error) = (0.15, 0.1);
+    // Of a box, a ball that clips, and the ends of u and v: the least and the most of what no point may exceed.
+    let boxed = implicit(saddle, 0.7);
+    let clipped = format!("{ball} implicit a {{ material m  formula \"{saddle}\"  clip ball }}");
+    let patch = "parametric a { material m  x \"u\"  y \"v\"  z \"u^3 - 3*u*v^2\"  u -0.7 0.7  v -0.5 0.5 }";
+    type Size = fn(DVec3) -> f64;
+    let cases: [(&str, Size, f64); 3] = [
+        (&boxed, |at| at.abs().max_element(), 0.7),
+        (&clipped, DVec3::length, 0.8),
+        (patch, |at| at.y.abs(), 0.5),
+    ];
+    for (objects, size, end) in cases {
+        let made = thickened(objects, 2.0 * half, error);
+        assert!(made.far.is_empty(), "{objects}: {:?}", made.far.first());
+        assert_eq!(characteristic(&made), 2, "{objects}");
+        let farthest = samples(&made).into_iter().map(size).fold(0.0, f64::max);
+        assert!((farthest - end - half).abs() <= error, "{objects}: {farthest}");
+    }
 }
 
 #[test]

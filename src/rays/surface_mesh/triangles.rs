@@ -154,10 +154,16 @@ fn in_cell(cell: Index, is_inside: &dyn Fn(Index) -> bool) -> Vec<[Edge; 3]> {
 fn crossing(body: &Body<'_>, [one, other]: [(DVec3, Option<bool>); 2]) -> Vertex {
     let (inner, outer) = if one.1 == Some(true) { (one, other) } else { (other, one) };
     let at = |t: f64| inner.0 + t * (outer.0 - inner.0);
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut middle = 0.5;
     let length = (outer.0 - inner.0).length();
     let step = inner.0.abs().max(outer.0.abs()).max_element() * f64::from(f32::EPSILON);
+    let least = LEAST.max(STEPS * step / length).min(0.5);
+    let vertex = |t: f64| at(t.clamp(least, 1.0 - least)).as_vec3().as_dvec3();
+    if let Some(thick) = body.thick() {
+        let found = vertex(thick.inner_part(inner.0, outer.0));
+        return Vertex { at: found, slack: thick.depth(found).abs() };
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut middle = 0.5;
     while (high - low) * length > FINEST * step {
         middle = 0.5 * (low + high);
         match body.contains_point(at(middle)) {
@@ -166,8 +172,7 @@ fn crossing(body: &Body<'_>, [one, other]: [(DVec3, Option<bool>); 2]) -> Vertex
             None => break,
         }
     }
-    let least = LEAST.max(STEPS * step / length).min(0.5);
-    let found = at(middle.clamp(least, 1.0 - least)).as_vec3().as_dvec3();
+    let found = vertex(middle);
     // The surface lies between a point inside and a point outside.
     let is_certain = inner.1 == Some(true) && outer.1 == Some(false);
     let slack = found.distance(at(low)).max(found.distance(at(high)));

@@ -156,7 +156,9 @@ fn the_text_is_edited_on_the_page_and_saved_if_nobody_else_has() {
     browser.wait(&format!("{said} === 'the scene has changed meanwhile: try again'"));
     assert_eq!(text(&watching), other);
     assert!(
-        browser.text("return document.querySelector('#paper:not([hidden]) #editor').value").contains("radius 1\n")
+        browser
+            .text("return document.querySelector('#paper:not([hidden]) #editor').value")
+            .contains("radius 1\n")
     );
 }
 
