@@ -7,7 +7,7 @@ use tabray_core::scene::counts::OneOf;
 use tabray_core::scene::entity::Entity;
 use tabray_core::scene::value::{Datum, Type, yes_or_no};
 use tabray_core::text::shortest;
-use tabray_exact::formula::variables::SPACE;
+use tabray_exact::formula::variables::{CURVE, PATCH, SPACE};
 
 /// A syntax of the scene language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,6 +53,8 @@ impl Syntax {
             Type::Name(_) => ("NAME", attribute.arity().examples().first().copied().unwrap_or(1)),
             Type::Choice(_) => ("N", 1),
             Type::Formula(SPACE) => ("x^2 + y^2 + z^2 - 1", 1),
+            Type::Formula(PATCH) => ("u * cos(v)", 1),
+            Type::Formula(CURVE) => ("2 + sin(t)", 1),
             Type::Formula(_) => ("2 + sin(y)", 1),
             Type::Truth if self == Self::Toml => ("true", 1),
             Type::Truth => ("yes", 1),

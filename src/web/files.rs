@@ -9,8 +9,7 @@ use tabray_core::scene::model::Model;
 use tabray_core::text::{list, short};
 use tabray_rays::surface_mesh::{self, Body, NoBody, NoMesh, mesh};
 
-/// The error of an object's mesh, as a fraction of the object's size. Cells near nodes are halved down to it, and a
-/// page has little memory.
+/// The error of an object's mesh, as a fraction of the object's size: a page has little memory.
 const FRACTION: f64 = 1.0 / 50.0;
 
 /// Returns the picture as a PNG.
@@ -53,6 +52,7 @@ pub fn stl(model: &Model, name: &str) -> Result<Vec<u8>, String> {
             format!("there is no object `{name}`: the objects are {}", list(names.iter().map(String::as_str)))
         }
         NoBody::Open(why) => format!("`{name}` encloses nothing: {why}"),
+        NoBody::Unproven => format!("`{name}` has no equation"),
         NoBody::Unbounded => format!("`{name}` has no end: intersect it with a box"),
         NoBody::Mesh => format!("`{name}` is a mesh already, or may be made of one"),
     })?;

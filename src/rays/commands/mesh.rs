@@ -135,8 +135,8 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         count(made.faces.len(), "triangle"),
         short(made.volume())
     ));
-    if body.is_capped {
-        messages::note("the faces of its box close the object");
+    if let Some(closed_by) = body.closed_by {
+        messages::note(&format!("the mesh is closed by {closed_by}; `--thickness` leaves the surface open"));
     }
     match &made.tangled {
         Some(places) if !places.is_empty() => messages::warning(

@@ -32,8 +32,8 @@ pub struct Body<'m> {
     pub(super) has_edges: bool,
     /// Whether it is made of faces, each with an equation of its own.
     has_faces: bool,
-    /// Whether the faces of its box close it.
-    pub is_capped: bool,
+    /// What closes it, if its surface is open, as words.
+    pub closed_by: Option<&'static str>,
     /// The places where it is not known whether there is a surface: low and high corners.
     pub(super) doubtful: Vec<[DVec3; 2]>,
 }
@@ -88,10 +88,12 @@ impl<'m> Body<'m> {
         // Each part of a solid is an object of its own, and knows the whole.
         let is_solid = shape.is_of_solid();
         let why = shape.why_not_closed().filter(|_| !is_solid);
-        let is_capped = why == Some(CUT_BY_BOX);
-        if let Some(why) = why.filter(|_| !is_capped) {
-            return Err(NoBody::Open(why.to_owned()));
-        }
+        let closed_by = match why {
+            Some(CUT_BY_BOX) => Some("the faces of its box"),
+            Some(why) => return Err(NoBody::Open(why.to_owned())),
+            None if is_solid && !shape.bounds_body() => Some("the object that clips it"),
+            None => None,
+        };
         // For a mesh of many faces, intervals do not tell what is inside, and a solid does not tell what it is made
         // of.
         let parts = model.patterns.iter().map(|pattern| &pattern.args).filter(|_| is_solid);
@@ -101,16 +103,16 @@ impl<'m> Body<'m> {
         // Of a shape of faces, proofs know the equation of one.
         let has_faces = |proven: &dyn ProofMethods| HitProofs::<f64>::face_of(proven, 0).is_some();
         let has_faces = shape.proven().is_none_or(has_faces);
-        let has_edges = is_solid || is_capped || has_faces;
+        let has_edges = is_solid || closed_by.is_some() || has_faces;
         let inside = Inside::Of(shape);
-        Ok(Self { inside, bounds, has_edges, has_faces, is_capped, doubtful: Vec::new() })
+        Ok(Self { inside, bounds, has_edges, has_faces, closed_by, doubtful: Vec::new() })
     }
 
     /// Returns the body of the points near a surface, which lie in a box.
     pub(super) fn near(thick: Thick, bounds: Aabb, doubtful: Vec<[DVec3; 2]>) -> Self {
         let inside = Inside::Near(thick);
         // Its border has edges wherever the surface has.
-        Self { inside, bounds, has_edges: true, has_faces: true, is_capped: false, doubtful }
+        Self { inside, bounds, has_edges: true, has_faces: true, closed_by: None, doubtful }
     }
 
     /// Tells whether a cube lies inside or outside; `None` where the surface may pass through it.

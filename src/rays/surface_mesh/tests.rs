@@ -121,7 +121,7 @@ fn what_a_box_cuts_is_closed_by_its_faces() {
     assert!((3.0..5.0).contains(&made.volume()), "{}", made.volume());
     let model = model(&implicit("z", 1.0));
     let body = Body::of(&model, "a").expect("a closed object");
-    assert!(body.is_capped);
+    assert_eq!(body.closed_by, Some("the faces of its box"));
     let half = mesh(&body, 0.2, None, &|_| ()).expect("a mesh");
     assert!(half.far.is_empty() && (half.volume() - 4.0).abs() < 3.0, "{}", half.volume());
     assert!(samples(&half).iter().all(|at| at.z < 0.2 && at.abs().max_element() < 1.2));
