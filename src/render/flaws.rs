@@ -1,5 +1,5 @@
 //! Flawed pixels of an image: those cut off at the ray budget, those whose first hit is undecided, and those that
-//! lack light from beyond the longest path.
+//! lack light from beyond the longest path; and the noise of those that take several samples.
 
 use crate::observer::{Count, RayKind, TraceObserver};
 use glam::DVec3;
@@ -15,6 +15,8 @@ pub struct Flaws {
     pub undecided: Undecided,
     /// The rays from the viewer that lack light because the notes' rules end long paths.
     pub far: FarPaths,
+    /// The noise of pixels that take several samples.
+    pub noise: Noise,
 }
 
 /// The pixels that have used up their ray budget.
@@ -50,10 +52,35 @@ pub struct UndecidedPixels {
     pub at: DVec3,
 }
 
+/// The estimated noise of some of the pixels that take several samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// The number of pixels.
+    pixels: u64,
+    /// The sum of their mean square errors in units of [`SQUARE`]: an integer, so the order of the sum makes no difference.
+    sum: u64,
+}
+
+/// The unit of the sum of mean square errors, where 1 is white.
+const SQUARE: f64 = 1e-12;
+
+impl Noise {
+    fn add(&mut self, Self { pixels, sum }: Self) {
+        self.pixels += pixels;
+        self.sum = self.sum.saturating_add(sum);
+    }
+
+    /// Returns the root mean square error of the pixels as they are shown, where 1 is white; `None` where it is not known.
+    pub fn rms(&self) -> Option<f64> {
+        (self.pixels != 0).then(|| (SQUARE * self.sum as f64 / self.pixels as f64).sqrt())
+    }
+}
+
 impl Flaws {
     /// Adds the flaws of another part of the image.
     pub fn add(&mut self, other: &Self) {
         self.cuts.add(other.cuts);
+        self.noise.add(other.noise);
         self.far = FarPaths { rays: self.far.rays + other.far.rays, of: self.far.of + other.far.of };
         for (of, pixels) in &other.undecided.0 {
             self.undecided.add(of.clone(), *pixels);
@@ -93,6 +120,7 @@ impl TraceObserver for Flaws {
         match count {
             Count::Rays(RayKind::Primary, count) => self.far.of += count as u64,
             Count::Far(count) => self.far.rays += count as u64,
+            Count::Noise(square) => self.noise.add(Noise { pixels: 1, sum: (square / SQUARE) as u64 }),
             Count::Cut(most) => self.cuts.add(BudgetCuts { pixels: 1, most }),
             Count::Undecided(object, doubt, at) => {
                 self.undecided.add((object, doubt), UndecidedPixels { count: 1, at });

@@ -34,6 +34,9 @@ pub enum Count {
     Culled(usize, usize),
     /// A pixel took a number of samples, where pixels differ in that.
     Sampled(u32),
+    /// The mean square error of a pixel's channels as they are shown, where 1 is white, estimated by the two halves of
+    /// its samples.
+    Noise(f64),
     /// The error of a pixel's colour is bounded.
     Bounded {
         /// The bound, where 1 is white.

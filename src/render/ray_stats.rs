@@ -93,7 +93,7 @@ impl TraceObserver for RayStats {
                 let footprints = footprints.into();
                 self.proofs.add(Proofs { certified: 1 - pixels, open: pixels, most, sum, footprints });
             }
-            Count::Cut(_) | Count::Undecided(..) | Count::Far(_) => {}
+            Count::Cut(_) | Count::Undecided(..) | Count::Far(_) | Count::Noise(_) => {}
         }
         self.flaws.count(count);
     }

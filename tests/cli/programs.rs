@@ -50,3 +50,32 @@ fn progress_is_told_in_lines_of_json() {
     let last = &told.last().expect("a line")["progress"];
     assert!(last["of"] == 31 && last["done"] == 31, "{err}");
 }
+
+/// The noise that progress tells is about the root mean square error against an image of many samples, for fixed numbers of
+/// samples and for those that pixels need.
+#[test]
+fn progress_tells_the_noise_of_what_is_done() {
+    let folder = folder();
+    let scene = "look_at eye { pixeldim 32 32 position 0 1.5 3 target 0 0.4 0 } material grey { diffuse 0.7 0.7 0.7 }
+         area_light lamp { emissivity 4 4 4 location 0 2 0 target 0.5 0 0 radius 0.6 }
+         plane floor { material grey point 0 0 0 normal 0 1 0 } sphere ball { material grey center 0 0.5 0 radius 0.5 }";
+    fs::write(folder.path().join("soft.ray"), scene).expect("a file");
+    let render = |samples: &str| {
+        let args =
+            ["render", "soft.ray", "--samples", samples, "--progress", "json", "--quiet", "-o", "a.ppm"];
+        let (status, _, err) = outcome(tabray(&folder).args(args));
+        assert_eq!(status, 0, "{err}");
+        let last: Value = serde_json::from_str(err.lines().last().expect("a line")).expect("JSON");
+        let image = fs::read(folder.path().join("a.ppm")).expect("an image");
+        (last["progress"]["noise"].as_f64(), image)
+    };
+    let (_, right) = render("512");
+    for samples in ["4", "8", "4..8"] {
+        let (noise, image) = render(samples);
+        let squares = image.iter().zip(&right).map(|(one, other)| f64::from(one.abs_diff(*other)).powi(2));
+        let error = (squares.sum::<f64>() / image.len() as f64).sqrt();
+        let noise = noise.expect("noise");
+        assert!(noise > 0.7 * error && noise < 1.6 * error, "{samples}: {noise} {error}");
+    }
+    assert_eq!(render("1").0, None, "one sample says nothing of its error");
+}

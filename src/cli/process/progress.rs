@@ -66,32 +66,45 @@ pub struct Progress {
     start: Instant,
     /// When progress was last told to a program.
     told: Mutex<Instant>,
+    /// The noise of what is done, in levels, where it is known.
+    noise: Mutex<Option<f64>>,
 }
 
 impl Progress {
     /// Begins with nothing of this many steps done.
     pub fn new(steps: usize) -> Self {
-        let style = ProgressStyle::with_template("{msg}{wide_bar} {percent:>3} % {eta} left");
+        let style = ProgressStyle::with_template("{prefix}{wide_bar} {percent:>3} % {eta} left{msg}");
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
         if let Some([done, all]) = overall() {
             // As if every scene had as many steps.
             bar.set_length((all * steps) as u64);
             bar.set_position((done * steps) as u64);
             bar.reset_eta();
-            bar.set_message(count());
+            bar.set_prefix(count());
         }
         Self {
             bar: bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())),
             start: Instant::now(),
             told: Mutex::new(Instant::now()),
+            noise: Mutex::default(),
         }
     }
 
     /// Tells a program how much is done.
     fn tell(&self) {
         let (done, of) = (self.bar.position(), self.bar.length().unwrap_or_default());
+        let noise = *self.noise.lock().unwrap_or_else(PoisonError::into_inner);
+        let noise = noise.map_or(String::new(), |levels| format!(",\"noise\":{levels:.3}"));
         // Who does not read it misses it.
-        let _ = writeln!(io::stderr(), "{{\"progress\":{{\"done\":{done},\"of\":{of}}}}}");
+        let _ = writeln!(io::stderr(), "{{\"progress\":{{\"done\":{done},\"of\":{of}{noise}}}}}");
+    }
+
+    /// Sets the noise of what is done: its root mean square error as it is shown, in levels of 255.
+    pub fn set_noise(&self, levels: f64) {
+        *self.noise.lock().unwrap_or_else(PoisonError::into_inner) = Some(levels);
+        if !self.bar.is_hidden() {
+            self.bar.set_message(format!(", noise {levels:.2} levels"));
+        }
     }
 
     fn is_for_programs() -> bool {

@@ -1,6 +1,7 @@
 //! Renders tiles: band by band as bytes, or as colours of full range. Does not wait for the last tile when it stops:
 //! one packet of rays may take minutes.
 
+use crate::options::max_error::LEVELS;
 use crate::options::size::Region;
 use crate::options::stop::Stop;
 use crate::process::failure::{self, Failure};
@@ -8,7 +9,7 @@ use crate::process::progress::Progress;
 use crate::process::{memory, messages};
 use crate::rendering::flaws::{report_proofs, warn_of};
 use crate::rendering::resume::ResumedImage;
-use crate::rendering::stats::Stats;
+use crate::rendering::stats::{Stats, Sum};
 use std::mem::replace;
 use std::ops::Range;
 use std::panic;
@@ -95,8 +96,9 @@ impl TileRender<'_> {
         take: impl FnOnce(&mut dyn Iterator<Item = Result<Band, Failure>>) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
         let progress = Progress::new(self.rows().len());
-        let callbacks = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         let tally = &self.stats.tally;
+        let row = || step(&progress, tally);
+        let callbacks = RenderCallbacks { stops: &|| self.stop.is_due(), row: &row };
         let add_flaws = |flaws: Flaws| tally.add_flaws(&flaws);
         let add = |stats: RayStats| tally.add(&stats);
         thread::scope(|scope| {
@@ -205,8 +207,9 @@ impl TileRender<'_> {
     ) -> Result<(), Failure> {
         let (grid, Region { columns, rows }) = (self.grid(), self.region);
         let progress = Progress::new(self.rows().len());
-        let callbacks = RenderCallbacks { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         let tally = &self.stats.tally;
+        let row = || step(&progress, tally);
+        let callbacks = RenderCallbacks { stops: &|| self.stop.is_due(), row: &row };
         let add = |stats: RayStats| tally.add(&stats);
         self.stop.begin_unkept(unkept);
         let within = |all: &Range<usize>, part: &Range<usize>| all.start + part.start..all.start + part.end;
@@ -236,4 +239,10 @@ impl TileRender<'_> {
         warn_of(&self.stats.tally.flaws(), self.plan.model);
         report_proofs(self.stats.tally.proofs(), self.plan);
     }
+}
+
+/// Counts a row as done, and shows the noise of what is done.
+fn step(progress: &Progress, tally: &Sum) {
+    tally.noise().into_iter().for_each(|noise| progress.set_noise(LEVELS * noise));
+    progress.step();
 }

@@ -81,6 +81,11 @@ impl Sum {
         self.get().flaws.clone()
     }
 
+    /// Returns the noise of the pixels, where it is known.
+    pub fn noise(&self) -> Option<f64> {
+        self.get().flaws.noise.rms()
+    }
+
     /// Returns the proven bounds of pixels' colours.
     pub fn proofs(&self) -> Proofs {
         self.get().proofs

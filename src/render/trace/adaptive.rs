@@ -18,7 +18,7 @@ use super::context::{PrimaryScratch, Scratch, Tracer};
 use super::estimate::{AdaptiveScratch, Estimate, RayResults, RaySummary, SampleRun};
 use super::path_hash::PathHashes;
 use super::ray_group::RayGroup;
-use super::sampled;
+use super::{is_measured, sampled};
 use crate::features::FEATURE_SAMPLES;
 use crate::observer::Count;
 use std::mem::take;
@@ -138,6 +138,9 @@ impl Tracer<'_, '_> {
             colours.set(pixel, estimate.colour());
             self.cut(estimate.missing / f64::from(estimate.count));
             self.observer.count(Count::Sampled(estimate.count));
+            if estimate.count > 1 && is_measured(pixels[pixel]) {
+                self.report_noise(&display, estimate.halves(), [estimate.count as usize / 2; 2]);
+            }
         }
     }
 }

@@ -221,6 +221,13 @@ impl Estimate {
         self.sum / f64::from(self.count)
     }
 
+    /// Returns the sums of the two halves of the samples.
+    pub fn halves(&self) -> [Rgb; 2] {
+        let blocks = (self.count as usize).min(self.most_blocks);
+        let (one, other) = self.blocks[..blocks].split_at(blocks / 2);
+        [one.iter().sum(), other.iter().sum()]
+    }
+
     /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
     /// error of the mean, estimated from the means of its blocks, plus the error that the contrast around leaves open.
     /// `doubt` is the factor of the standard error.

@@ -46,6 +46,7 @@ use draws::RIM_POINTS;
 use glam::DVec2;
 use ray_group::RayGroup;
 use std::slice;
+use tabray_world::display::Display;
 use tabray_world::geometry::ray_packet::PACKET_SIZE;
 use tabray_world::geometry::sight::Sight;
 use tabray_world::material::Rgb;
@@ -54,6 +55,11 @@ use tabray_world::sample::{self, Sample, Samples};
 use tabray_world::sensor;
 use tabray_world::simd::cpu::Cpu;
 use tabray_world::simd::soa::View;
+
+/// Tells whether the noise of a pixel is measured. One in eight tells that of the image.
+fn is_measured([x, y]: [usize; 2]) -> bool {
+    (x + 3 * y).is_multiple_of(8)
+}
 
 /// Computes the colour of a pixel, before it is clamped to what an image can show. `x` counts pixels from the left and
 /// `y` from the bottom.
@@ -325,8 +331,10 @@ impl Tracer<'_, '_> {
         let camera = &self.plan.camera;
         let PrimaryScratch { group, seen, colours, alpha, .. } = primary;
         let mut colours = colours.resized(pixels.len());
-        let samples = camera.samples as usize;
+        let (samples, half) = (camera.samples as usize, camera.samples as usize / 2);
+        let display = camera.display();
         let (mut sum, mut clear, mut missing, mut count) = (Rgb::ZERO, 0.0, 0.0, 0);
+        let (mut pixel, mut taken, mut sum_of_half) = (0, 0, Rgb::ZERO);
         while count < samples * pixels.len() {
             let len = PACKET_SIZE.min(samples * pixels.len() - count);
             let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
@@ -336,7 +344,9 @@ impl Tracer<'_, '_> {
             let mut lanes = 0..len;
             while !lanes.is_empty() {
                 // The samples of one pixel may go on in the next packet.
-                let end = len.min(lanes.start + samples - count % samples);
+                let is_measured = half > 0 && is_measured(pixels[pixel]);
+                let next = if is_measured && taken < half { half } else { samples };
+                let end = len.min(lanes.start + next - taken);
                 let of_one = lanes.start..end;
                 sum = seen.view(len).part(of_one.clone()).added_to(sum);
                 if camera.alpha {
@@ -345,17 +355,26 @@ impl Tracer<'_, '_> {
                 if self.scratch.any_missing {
                     missing = of_one.fold(missing, |missing, lane| missing + self.missing(lane));
                 }
-                count += end - lanes.start;
+                taken += end - lanes.start;
                 lanes.start = end;
-                if count % samples == 0 {
-                    colours.set(count / samples - 1, sum / f64::from(camera.samples));
+                if taken == half {
+                    sum_of_half = sum;
+                }
+                if taken == samples {
+                    if is_measured {
+                        let sums = [sum_of_half, sum - sum_of_half];
+                        self.report_noise(&display, sums, [half, samples - half]);
+                    }
+                    colours.set(pixel, sum / f64::from(camera.samples));
                     self.cut(missing / f64::from(camera.samples));
                     if camera.alpha {
                         alpha.push(1.0 - clear / f64::from(camera.samples));
                     }
+                    (pixel, taken) = (pixel + 1, 0);
                     (sum, clear, missing) = (Rgb::ZERO, 0.0, 0.0);
                 }
             }
+            count += len;
         }
     }
 
@@ -375,6 +394,14 @@ impl Tracer<'_, '_> {
         }
         let is_sampled = !samples.is_empty();
         group.fill_primary(cpu, (&plan.camera, is_sampled), plan.depth.as_ref(), places, lens, len);
+    }
+
+    /// Reports the noise of a pixel, given the sums and the numbers of the two halves of its samples. The error of their
+    /// mean is about half of the difference of the halves; evenly spread samples err less.
+    fn report_noise(&mut self, display: &Display, sums: [Rgb; 2], counts: [usize; 2]) {
+        let [one, other] = [0, 1].map(|half| sums[half] / counts[half] as f64);
+        let off = if one == other { Rgb::ZERO } else { 0.5 * (display.shown(one) - display.shown(other)) };
+        self.observer.count(Count::Noise((off * off).element_sum() / 3.0));
     }
 
     /// Reports a pixel that lacks light. `missing` bounds that light, in any channel; under the free rules, it is the
