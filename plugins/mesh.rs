@@ -9,6 +9,7 @@ use tabray::prelude::*;
 use tabray::shapes::mesh::read::{self, Polish, Wanted};
 use tabray::shapes::mesh::{self, Finished, Look, Mesh, Painted, Sort, Surface, ToWorld};
 use tabray::world::coat::fresnel;
+use tabray::world::interface::Gloss;
 
 static FILE: Pparm<PathBuf> =
     Pparm::required("file", "an OBJ, PLY, STL or glTF file, relative to the scene's folder");
@@ -130,9 +131,15 @@ fn polish(args: &Args) -> impl Fn(Material, &Polish) -> Material {
     let size = libm::cbrt(args.get(&SCALE).abs().element_product());
     move |material, polish| {
         let (interface, specular) = match *polish {
-            Polish::Glass { index, roughness, left, at } => {
-                let medium = Medium::new(left, size * at);
-                (AnyInterface::new(Glass { index, medium, roughness }), material.specular)
+            Polish::Glass { index, roughness, varies, left, at } => {
+                let glass = Glass { index, medium: Medium::new(left, size * at), roughness };
+                let any = if varies { AnyInterface::new(Varied(glass)) } else { AnyInterface::new(glass) };
+                (any, material.specular)
+            }
+            Polish::Metallic => {
+                // Where a shader of the scene knows no images, nothing is metal.
+                let matt = Gloss { law: Law::metal(Rgb::ZERO, 0.0), roughness: 1.0 };
+                (AnyInterface::new(Varied(matt)), material.specular)
             }
             Polish::Metal { colour, roughness } => (AnyInterface::new(Metal { colour, roughness }), colour),
             Polish::Coat { index, roughness } => {
@@ -141,6 +148,32 @@ fn polish(args: &Args) -> impl Fn(Material, &Polish) -> Material {
             }
         };
         Material { interface: Some(interface), specular, ..material }
+    }
+}
+
+/// An interface that images change from point to point.
+#[derive(PartialEq)]
+struct Varied<I>(I);
+
+impl<I: Interface> Interface for Varied<I> {
+    fn absorbs(&self) -> bool {
+        self.0.absorbs()
+    }
+
+    fn medium(&self) -> Option<Medium> {
+        self.0.medium()
+    }
+
+    fn law(&self) -> Law {
+        self.0.law()
+    }
+
+    fn roughness(&self) -> f64 {
+        self.0.roughness()
+    }
+
+    fn varies(&self) -> bool {
+        true
     }
 }
 

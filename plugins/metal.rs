@@ -47,7 +47,7 @@ pub struct Metal {
 impl Interface for Metal {
     /// Follows Schlick's approximation of Fresnel's equations (1994), and absorbs the light that is not reflected.
     fn law(&self) -> Law {
-        Law::Schlick(self.colour)
+        Law::metal(self.colour, 1.0)
     }
 
     fn roughness(&self) -> f64 {

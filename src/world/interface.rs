@@ -54,6 +54,39 @@ pub trait Interface: Send + Sync {
     fn roughness(&self) -> f64 {
         0.0
     }
+
+    /// Tells whether the surface's shader may say at each point how rays cross it, by its
+    /// [gloss](crate::shader::Shader::gloss), with at most this roughness. Nothing is proven of that. The answer is the same in
+    /// every call.
+    fn varies(&self) -> bool {
+        false
+    }
+}
+
+/// How rays cross a surface at one of its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gloss {
+    /// The law by which they cross it.
+    pub law: Law,
+    /// How rough the surface is there, from 0 to 1.
+    pub roughness: f64,
+}
+
+impl Interface for Gloss {
+    fn law(&self) -> Law {
+        self.law
+    }
+
+    fn roughness(&self) -> f64 {
+        self.roughness
+    }
+}
+
+/// Returns the exponent of highlights that are about as wide as the facets of a rough surface scatter, for lamps without
+/// a size, which facets never meet; 0 for surfaces that are nearly smooth.
+pub fn shininess(roughness: f64) -> f64 {
+    let width = roughness * roughness;
+    if roughness > 0.1 { (2.0 / (width * width) - 2.0).max(1.0) } else { 0.0 }
 }
 
 /// The law of an interface.
@@ -62,23 +95,33 @@ pub enum Law {
     /// Snell's law and Fresnel's equations for light that is not polarised, by the refractive index inside, relative
     /// to outside.
     Fresnel(f64),
-    /// Schlick's approximation, by the fractions of light that are reflected along the normal; the rest is absorbed.
-    Schlick(DVec3),
+    /// Schlick's approximation; what is not reflected is absorbed, or left to the body.
+    Schlick {
+        /// The fractions of light that are reflected along the normal.
+        colour: DVec3,
+        /// The fraction that is reflected at grazing angles.
+        grazing: f64,
+    },
     /// Another law.
     Unknown,
 }
 
 impl Law {
+    /// Returns the law of a surface that is metal of a colour in this fraction, by area.
+    pub fn metal(colour: DVec3, part: f64) -> Self {
+        Self::Schlick { colour: part * colour.clamp(DVec3::ZERO, DVec3::ONE), grazing: part }
+    }
+
     /// Returns how rays along unit vectors continue at a surface with unit normals that face them, on its inside or its
     /// outside; `None` where that is open.
     pub fn cross<N: Number>(self, dir: [N; 3], normal: [N; 3], is_inside: bool) -> Option<Crossing<[N; 3]>> {
         let (n, one) = (N::constant, N::constant(1.0));
         let cosine = (-dot(dir, normal)).max(n(0.0)).min(one);
         match self {
-            Self::Schlick(colour) => {
-                let grazing = (one - cosine).powi(5);
-                let colour: [N; 3] = constants(colour);
-                let reflected = per_axis(|channel| colour[channel] + (one - colour[channel]) * grazing);
+            Self::Schlick { colour, grazing } => {
+                let part = (one - cosine).powi(5);
+                let (colour, grazing): ([N; 3], N) = (constants(colour), n(grazing));
+                let reflected = per_axis(|channel| colour[channel] + (grazing - colour[channel]) * part);
                 Some(Crossing { reflected, onward: None })
             }
             Self::Fresnel(1.0) => Some(Crossing { reflected: [n(0.0); 3], onward: Some(dir) }),

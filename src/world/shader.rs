@@ -1,5 +1,6 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
+use crate::interface::Gloss;
 use crate::luminous::Luminous;
 use crate::material::{Look, Material, Reflectivity, Rgb};
 use crate::number::Number;
@@ -108,6 +109,12 @@ pub trait Shader: Send + Sync {
         Self: Sized,
     {
         N::constant(1.0)
+    }
+
+    /// Returns how rays cross the surface at a point, if its material's interface
+    /// [varies](crate::interface::Interface::varies); `None` where they cross it as that says.
+    fn gloss(&self, _at: &SurfacePoint) -> Option<Gloss> {
+        None
     }
 
     /// Returns the three reflectivities, if each is the same at every point. Then only [`bend`](Self::bend) is called

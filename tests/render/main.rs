@@ -16,6 +16,7 @@ mod docs;
 mod emitted;
 mod footprints;
 mod glass;
+mod gloss;
 mod inside;
 mod laws;
 mod left_out;

@@ -232,6 +232,30 @@ fn faces_of_two_materials_are_seen_as_two_meshes() {
     assert_eq!(picture(&of_file("files")), picture(&(of_file("red") + &of_file("clear"))));
 }
 
+/// An image says how metallic and how rough each point is, in place of a number.
+#[test]
+fn images_of_metal_and_roughness_hold_at_each_point() {
+    let looks = "newmtl Material #25\nKd 0.5 0.25 1\nPm 0\nmap_Pm images/two colours.png\n\
+        map_Pr images/two colours.png\nPr 0.9\nnewmtl plain\nKd 0.5 0.5 0.5\nPm 1\nPr 0.5\n";
+    let folder = folder(&[("wall.obj", WALL), ("my looks.mtl", looks), ("other.mtl", "")]);
+    let (model, warnings) = read(folder.path(), "file wall.obj materials file");
+    assert!(!warnings.contains("not shown"), "{warnings}");
+    let near = |at: [f64; 3], colour: [f64; 3], part: f64| {
+        let [ambient, diffuse, specular] =
+            [0.5, 1.0 - part, part].map(|factor| colour.map(|channel| factor * channel));
+        is_near(&model, at, [ambient, diffuse, specular]);
+    };
+    let forged = |byte: f64| byte / 255.0 * (1.0 - byte / 255.0).powi(2);
+    // Red is what counts; the last point is halfway between two texels.
+    for (at, byte) in
+        [([0.5, 3.0, 0.0], 128.0), ([1.5, 3.0, 0.0], 0.0), ([3.5, 1.0, 0.0], 64.0), ([1.0, 3.0, 0.0], 64.0)]
+    {
+        near(at, [0.5, 0.25, 1.0], forged(byte));
+    }
+    near([6.5, 2.0, 0.0], [0.5; 3], 0.25);
+    nothing_is_contradicted(&model);
+}
+
 #[test]
 fn what_a_mesh_of_glass_does_not_take_from_its_file_is_told() {
     let folder = folder(&[("wall.obj", WALL), ("my looks.mtl", LOOKS), ("other.mtl", "")]);

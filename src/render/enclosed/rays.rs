@@ -237,6 +237,10 @@ impl<'s> EnclosingTracer<'s> {
         if !shape.is_two_sided() {
             return None;
         }
+        if interface.varies() {
+            // What the shader says of the interface is only bounded.
+            return self.open(ray, self.bound(ray));
+        }
         let (dir, travelled) = (ray.path.line.dir, ray.travelled + t * ray.length);
         let (zero, one, transparency) = (N::constant(0.0), N::constant(1.0), material.transparency);
         let mut colour = [zero; 3];

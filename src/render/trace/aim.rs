@@ -82,7 +82,7 @@ impl Tracer<'_, '_> {
         if self.plan.max_depth == 0 {
             return;
         }
-        let (model, plan, roughness) = (self.model, self.plan, interface.roughness());
+        let (model, plan) = (self.model, self.plan);
         let lamps = plan.needs.lights.iter().filter(|_| !plan.lamps.is_empty()).filter_map(|index| {
             let light = &model.lights[*index].value;
             light.emitter().filter(|_| is_aimed_at(light)).map(|emitter| Target::Lamp(*index, emitter))
@@ -91,7 +91,8 @@ impl Tracer<'_, '_> {
             let aimed = self.aim(target, group, surface);
             for Aimed { lane, sample, density } in &aimed {
                 let lane = *lane;
-                let facets = Facets::seen(surface, lane, group.dir.get(lane), roughness);
+                let facets = Facets::seen(surface, lane, group.dir.get(lane), interface);
+                let interface = surface.interface(lane, interface);
                 let (mirrored, by_chance) = facets.mirrored(interface, surface.sides[lane], sample.toward);
                 let light = PI * *density * self.part(*density, by_chance) * sample.light;
                 colours.set(lane, colours.get(lane) + light * mirrored);

@@ -152,6 +152,7 @@ impl Tracer<'_, '_> {
                 Some(sent) if !passes => Colours::Uniform(sent),
                 _ => Colours::Each(emissivity.view(count)),
             },
+            exponents: &surface.exponents,
             looks: surface.lit_by_lamp(diffuse, count, (material.highlight, are_mirrored), speculars),
         };
         let shows_highlights = are_mirrored || material.highlight != Rgb::ZERO;

@@ -22,7 +22,7 @@ const PROBED: f64 = 0.5;
 impl Tracer<'_, '_> {
     /// Bends the normals at points of a surface to those of facets, which the samples of the primary rays draw. Where
     /// pixels have one sample, the surface is smooth.
-    pub(super) fn draw_facets(&mut self, group: &RayGroup, surface: &mut Surface, roughness: f64) {
+    pub(super) fn draw_facets(&mut self, group: &RayGroup, surface: &mut Surface, interface: &dyn Interface) {
         if self.scratch.samples.is_empty() {
             return;
         }
@@ -43,7 +43,7 @@ impl Tracer<'_, '_> {
             } else {
                 sample.on_facet(depth)
             };
-            let facets = Facets::seen(surface, lane, group.dir.get(lane), roughness);
+            let facets = Facets::seen(surface, lane, group.dir.get(lane), interface);
             surface.facets.push(facets);
             surface.normals.set(lane, facets.choose(draw));
             if lane < group.len && self.scratch.path_hashes.is_on {
@@ -67,8 +67,9 @@ pub(super) struct Facets {
 }
 
 impl Facets {
-    /// Returns the facets of a surface at the hit of a ray along `dir`.
-    pub fn seen(surface: &Surface, lane: usize, dir: DVec3, roughness: f64) -> Self {
+    /// Returns the facets of a surface at the hit of a ray along `dir`, given the interface of its material.
+    pub fn seen(surface: &Surface, lane: usize, dir: DVec3, interface: &dyn Interface) -> Self {
+        let roughness = surface.interface(lane, interface).roughness();
         let normal = surface.normals.get(lane);
         let geometric = surface.bent_from(lane).unwrap_or(normal);
         let [normal, geometric] = [normal, geometric].map(|normal| facing(normal, dir));
@@ -89,7 +90,8 @@ impl Facets {
     /// Returns the density of a unit direction, per unit of solid angle, if lamps are met there by aim, too; infinite
     /// otherwise.
     pub fn density_of(&self, dir: DVec3) -> f64 {
-        let is_aimed_at = dir.dot(self.normal) > 0.0 && dir.dot(self.geometric) > 0.0;
+        let is_above = dir.dot(self.normal) > 0.0 && dir.dot(self.geometric) > 0.0;
+        let is_aimed_at = is_above && self.width != 0.0;
         if is_aimed_at { self.toward(dir).iter().map(|(_, density)| density).sum() } else { f64::INFINITY }
     }
 
@@ -123,7 +125,7 @@ impl Facets {
     fn density(&self, facet: DVec3) -> f64 {
         let Self { normal, toward, width, .. } = *self;
         let (cosine, seen, square) = (facet.dot(normal), toward.dot(normal).max(0.0), width * width);
-        if cosine <= 0.0 {
+        if cosine <= 0.0 || width == 0.0 {
             return 0.0;
         }
         let spread = facet.cross(normal).length_squared() + square * cosine * cosine;

@@ -35,6 +35,8 @@ pub(super) struct LitPoints<'l> {
     pub blocked: &'l [u64],
     /// The colours that the light sends.
     pub emissivity: Colours<'l>,
+    /// The exponent of each point's highlight, 0 for no highlight; empty where all have the same.
+    pub exponents: &'l [f64],
     pub looks: Reflectivities<'l>,
 }
 
@@ -62,14 +64,20 @@ kernels! {
         let (count, whole) = (lit.shines.len(), shininess as u32);
         let colours = colours.first(count);
         if shininess == 0.0 {
-            shine_each(lit, None::<fn(f64) -> f64>, colours);
+            shine_each(lit, None::<fn(usize, f64) -> f64>, colours);
+        } else if !lit.exponents.is_empty() {
+            let highlight = |lane: usize, cos: f64| match lit.exponents[lane] {
+                0.0 => 0.0,
+                exponent => libm::pow(cos.min(1.0), exponent),
+            };
+            shine_each(lit, Some(highlight), colours);
         } else if f64::from(whole) == shininess && whole < 1 << 8 {
-            shine_each(lit, Some(|cos| whole_power::<8>(cos, whole)), colours);
+            shine_each(lit, Some(|_, cos| whole_power::<8>(cos, whole)), colours);
         } else if f64::from(whole) == shininess && whole < 1 << 17 {
-            shine_each(lit, Some(|cos| whole_power::<17>(cos, whole)), colours);
+            shine_each(lit, Some(|_, cos| whole_power::<17>(cos, whole)), colours);
         } else {
             // Rounding may make a cosine larger than 1, and a large power of it much larger.
-            shine_each(lit, Some(|cos: f64| libm::pow(cos.min(1.0), shininess)), colours);
+            shine_each(lit, Some(|_, cos: f64| libm::pow(cos.min(1.0), shininess)), colours);
         }
     }
 
@@ -168,9 +176,9 @@ fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
     product
 }
 
-/// Adds the light that reaches points. `highlight` returns the strength of a highlight from the cosine of its angle.
+/// Adds the light that reaches points. `highlight` returns the strength of a point's highlight from the cosine of its angle.
 #[inline(always)]
-fn shine_each(lit: &LitPoints, highlight: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
+fn shine_each(lit: &LitPoints, highlight: Option<impl Fn(usize, f64) -> f64>, colours: ViewMut) {
     let count = lit.shines.len();
     match lit.looks {
         Reflectivities::Uniform(Look { diffuse, specular, .. }) => {
@@ -189,7 +197,7 @@ fn shine_sent(
     lit: &LitPoints,
     diffuse: impl Fn(usize) -> Rgb,
     specular: impl Fn(usize) -> Rgb,
-    highlight: Option<impl Fn(f64) -> f64>,
+    highlight: Option<impl Fn(usize, f64) -> f64>,
     colours: ViewMut,
 ) {
     match lit.emissivity {
@@ -208,7 +216,7 @@ fn shine_all(
     sent: impl Fn(usize) -> Rgb,
     diffuse: impl Fn(usize) -> Rgb,
     specular: impl Fn(usize) -> Rgb,
-    highlight: Option<impl Fn(f64) -> f64>,
+    highlight: Option<impl Fn(usize, f64) -> f64>,
     mut colours: ViewMut,
 ) {
     let count = lit.shines.len();
@@ -221,7 +229,7 @@ fn shine_all(
             let half = (toward.get(lane) - seen.get(lane)).normalize();
             let cosine = half.dot(normals.get(lane));
             // There is no highlight from behind: powers of a negative cosine have the wrong sign, or are NaN.
-            let added = light * specular(lane) * highlight(cosine);
+            let added = light * specular(lane) * highlight(lane, cosine);
             colour = if cosine > 0.0 { colour + added } else { colour };
         }
         let before = colours.get(lane);

@@ -99,6 +99,7 @@ impl Tracer<'_, '_> {
         if is_free {
             surface.cover(object, count);
         }
+        surface.polish(object, count);
         let (glints, roughness) = (material.glints(), material.roughness());
         let gleams = is_free && roughness != 0.0 && self.aims();
         match glints {
@@ -123,8 +124,8 @@ impl Tracer<'_, '_> {
             let hit = Hit { index, object, distance: shading.distances[0], point };
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
         }
-        if roughness != 0.0 {
-            self.draw_facets(group, surface, roughness);
+        if let Some(interface) = material.interface.as_deref().filter(|_| roughness != 0.0) {
+            self.draw_facets(group, surface, interface);
         }
         match &material.interface {
             _ if is_free => self.branch(group, shading, colours),

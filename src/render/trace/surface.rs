@@ -8,7 +8,7 @@ use glam::DVec3;
 use tabray_world::coincidence;
 use tabray_world::geometry::ray::Side;
 use tabray_world::geometry::ray_packet::RayPacket;
-use tabray_world::interface::{Crossing, Interface};
+use tabray_world::interface::{Crossing, Gloss, Interface, shininess};
 use tabray_world::material::{Look, Material, Rgb};
 use tabray_world::packets::shader::SurfacePoints;
 use tabray_world::patch::{Patch, Window};
@@ -54,6 +54,10 @@ pub(super) struct Surface {
     pub passed: Vec<Rgb>,
     /// The fraction of what is behind each point that it covers; empty if all is covered.
     pub coverage: Vec<f64>,
+    /// How rays cross the surface at each point, where that varies; else empty.
+    glosses: Vec<Option<Gloss>>,
+    /// The exponent of the highlight at each point, where that varies; else empty.
+    pub exponents: Vec<f64>,
 }
 
 /// The surroundings of hit points, as the rays of a packet see them, where samples show patches.
@@ -133,12 +137,31 @@ impl Surface {
     pub fn cover(&mut self, object: &Object, count: usize) {
         self.coverage.clear();
         if object.shader.covers_in_part() {
-            let coverage = |lane: usize| match self.seen.get(lane) {
-                Some(at) => object.shader.coverage_at(at),
-                None => object.shader.coverage_at(&SurfacePoint::at(self.points.get(lane))),
-            };
-            self.coverage.extend((0..count).map(coverage));
+            let coverage = (0..count).map(|lane| object.shader.coverage_at(&self.point(lane)));
+            self.coverage = coverage.collect();
         }
+    }
+
+    /// Computes how rays cross the surface at the points, where that varies.
+    pub fn polish(&mut self, Object { material, shader, .. }: &Object, count: usize) {
+        self.glosses.clear();
+        self.exponents.clear();
+        if material.interface.as_ref().is_some_and(|interface| interface.varies()) {
+            self.glosses = (0..count).map(|lane| shader.gloss(&self.point(lane))).collect();
+            let own = material.shininess;
+            let exponent = |gloss: &Option<Gloss>| gloss.map_or(own, |gloss| shininess(gloss.roughness));
+            self.exponents.extend(self.glosses.iter().map(exponent));
+        }
+    }
+
+    /// Returns a point as the object's shader sees it.
+    fn point(&self, lane: usize) -> SurfacePoint {
+        self.seen.get(lane).copied().unwrap_or_else(|| SurfacePoint::at(self.points.get(lane)))
+    }
+
+    /// Returns how rays cross the surface at a point, given the interface of its material.
+    pub fn interface<'s>(&'s self, lane: usize, own: &'s dyn Interface) -> &'s dyn Interface {
+        self.glosses.get(lane).and_then(Option::as_ref).map_or(own, |gloss| gloss)
     }
 
     /// Mirrors rays that hit the points in these directions.
@@ -198,7 +221,7 @@ impl Surface {
     pub fn crossings(&self, interface: &dyn Interface, dir: View) -> Vec<Crossing> {
         let crossing = |lane: usize| {
             let normals = [self.normals.get(lane), self.bent_from(lane).unwrap_or(self.normals.get(lane))];
-            crossing(interface, dir.get(lane), normals, self.sides[lane])
+            crossing(self.interface(lane, interface), dir.get(lane), normals, self.sides[lane])
         };
         (0..dir.len()).map(crossing).collect()
     }

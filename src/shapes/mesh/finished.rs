@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, per_axis};
+use tabray_world::interface::{Gloss, Law};
 use tabray_world::luminous::{Luminous, Triangles};
 use tabray_world::material::{Look, Material, Reflectivity, Rgb};
 use tabray_world::number::{Number, coarse, product};
@@ -162,10 +163,11 @@ impl Finished {
         self.surface.finishes.iter().flatten().fold(plain, |most, finish| {
             let colour = finish.colour * brightest(finish.colours.as_ref()) * tint;
             let emission = finish.emission * brightest(finish.emissions.as_ref());
+            let [little, much] = finish.mirrored_range();
             Look {
                 ambient: most.ambient.max(own.ambient.abs() * colour + emission),
-                diffuse: most.diffuse.max(colour * (1.0 - finish.metal)),
-                specular: most.specular.max(colour * finish.metal + finish.specular),
+                diffuse: most.diffuse.max(colour * (1.0 - little)),
+                specular: most.specular.max(colour * much + finish.specular),
             }
         })
     }
@@ -174,6 +176,7 @@ impl Finished {
     fn shown(&self, of: Reflectivity, material: &Material, at: &SurfacePoint) -> Rgb {
         let spot = self.spot(at.position);
         let colour = |finish: &Finish| self.colour(&spot, finish, at.patch);
+        let mirrored = |finish: &Finish| finish.mirrored(|map| Some(self.place(&spot, map, None)?[0]));
         match (of, spot.finish) {
             (Reflectivity::Specular, None) => material.specular,
             (_, None) => material.reflectivity(of) * self.tint(&spot),
@@ -181,10 +184,11 @@ impl Finished {
                 let emission = finish.emission * self.light(&spot, finish.emissions.as_ref(), at.patch);
                 material.ambient * colour(finish) + emission
             }
-            (Reflectivity::Diffuse, Some(finish)) => colour(finish) * (1.0 - finish.metal),
+            (Reflectivity::Diffuse, Some(finish)) => colour(finish) * (1.0 - mirrored(finish)),
             (Reflectivity::Specular, Some(finish)) => {
-                let mirrored = if finish.metal == 0.0 { Rgb::ZERO } else { colour(finish) };
-                mirrored * finish.metal + finish.specular
+                let part = mirrored(finish);
+                let mirrored = if part == 0.0 { Rgb::ZERO } else { colour(finish) };
+                mirrored * part + finish.specular
             }
         }
     }
@@ -255,10 +259,12 @@ impl Shader for Finished {
         };
         let light = |map: &Option<Map>| self.enclosed::<N>(face, weights, map.as_ref());
         let colour = product(product(constants(finish.colour), light(&finish.colours)), tint);
+        let between = |low: f64, high: f64| if low == high { n(low) } else { N::any(low, high) };
+        let [little, much] = finish.mirrored_range();
         let (times, more) = match of {
             Reflectivity::Ambient => (own, product(constants(finish.emission), light(&finish.emissions))),
-            Reflectivity::Diffuse => ([n(1.0 - finish.metal); 3], [n(0.0); 3]),
-            Reflectivity::Specular => ([n(finish.metal); 3], constants(finish.specular)),
+            Reflectivity::Diffuse => ([between(1.0 - much, 1.0 - little); 3], [n(0.0); 3]),
+            Reflectivity::Specular => ([between(little, much); 3], constants(finish.specular)),
         };
         Some(per_axis(|channel| colour[channel] * times[channel] + more[channel]))
     }
@@ -340,6 +346,18 @@ impl Shader for Finished {
             self.surface.colours.is_empty() && self.surface.is_alone(coarse, |other| other == face);
         let [low, high] = if is_known { range(self.finish(face)) } else { [0.0, 1.0] };
         N::any(low, high)
+    }
+
+    fn gloss(&self, at: &SurfacePoint) -> Option<Gloss> {
+        let spot = self.spot(at.position);
+        let finish = spot.finish?;
+        let place = |map: &Map| Some(self.place(&spot, map, None)?[0]);
+        let law = match finish.polish? {
+            Polish::Glass { index, .. } => Law::Fresnel(index),
+            Polish::Metallic => Law::metal(self.colour(&spot, finish, at.patch), finish.metal.at(place)),
+            Polish::Metal { .. } | Polish::Coat { .. } => return None,
+        };
+        Some(Gloss { law, roughness: finish.roughness.at(place) })
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {

@@ -10,6 +10,7 @@ use tabray_world::any_shape::AnyShape;
 use tabray_world::body::{AnyShader, Body, MakeBoundary};
 use tabray_world::geometry::placement::Placement;
 use tabray_world::geometry::ray_packet::split;
+use tabray_world::interface::Gloss;
 use tabray_world::luminous::Luminous;
 use tabray_world::material::{Look, Material, Reflectivity, Rgb};
 use tabray_world::number::Number;
@@ -168,6 +169,10 @@ impl Shader for PlacedShader {
 
     fn coverage<N: Number>(&self, at: &Point<N>) -> N {
         self.in_own(at, |at| N::looks(self.own()).covers(at))
+    }
+
+    fn gloss(&self, at: &SurfacePoint) -> Option<Gloss> {
+        self.own().gloss(&self.object_point(at))
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

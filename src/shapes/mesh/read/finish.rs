@@ -81,6 +81,57 @@ impl Map {
     }
 }
 
+/// A number from 0 to 1 that an image may change from place to place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    /// The number, or the factor of the image's numbers.
+    factor: f64,
+    /// The image, unless the number is the same everywhere, and the channel that has its numbers.
+    map: Option<(Map, usize)>,
+    /// The least number.
+    least: f64,
+}
+
+impl From<f64> for Factor {
+    fn from(number: f64) -> Self {
+        let number = number.clamp(0.0, 1.0);
+        Self { factor: number, map: None, least: number }
+    }
+}
+
+impl Factor {
+    /// Makes a number that is that of a channel of an image, from 0 to 2, times a factor.
+    pub fn of_image(factor: f64, map: Map, channel: usize) -> Self {
+        let [width, height] = map.texture.size();
+        let texels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        let numbers = texels.map(|(column, row)| map.texture.numbers(column, row)[channel]);
+        let [low, high] = numbers.fold([1.0_f64, 0.0_f64], |[low, high], of| [low.min(of), high.max(of)]);
+        let Self { factor, .. } = factor.into();
+        match low < high {
+            true => Self { factor, map: Some((map, channel)), least: factor * low },
+            false => (factor * high).into(),
+        }
+    }
+
+    /// Tells whether the number changes from place to place.
+    pub fn varies(&self) -> bool {
+        self.map.is_some()
+    }
+
+    /// Returns the least and the greatest number.
+    pub fn range(&self) -> [f64; 2] {
+        [self.least, self.factor]
+    }
+
+    /// Returns the number at a point. `place` returns its position in an image, in texels.
+    pub fn at(&self, place: impl FnOnce(&Map) -> Option<DVec2>) -> f64 {
+        let Some((map, channel)) = &self.map else { return self.factor };
+        let Some(place) = place(map) else { return self.factor };
+        let number = map.blended(place, |column, row| map.texture.numbers(column, row))[*channel];
+        (self.factor * number).clamp(self.least, self.factor)
+    }
+}
+
 /// How opaque a surface is from place to place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opacity {
@@ -163,6 +214,8 @@ pub enum Polish {
         index: f64,
         /// How rough it is, from 0 to 1.
         roughness: f64,
+        /// Whether the roughness changes from place to place.
+        varies: bool,
         /// The fractions of light that are left after a path of length `at` through it.
         left: Rgb,
         /// A length, in the units of the file.
@@ -175,6 +228,8 @@ pub enum Polish {
         /// How rough it is, from 0 to 1.
         roughness: f64,
     },
+    /// Metal in the fraction that [`Finish::metal`] says at each point, and matt for the rest.
+    Metallic,
     /// A clear coat over a matt body.
     Coat {
         /// The refractive index of the coat.
@@ -187,9 +242,12 @@ pub enum Polish {
 impl Polish {
     fn numbers(self) -> [f64; 7] {
         match self {
-            Self::Glass { index, roughness, left, at } => [1.0, index, roughness, left.x, left.y, left.z, at],
+            Self::Glass { index, roughness, left, at, .. } => {
+                [1.0, index, roughness, left.x, left.y, left.z, at]
+            }
             Self::Metal { colour, roughness } => [2.0, roughness, colour.x, colour.y, colour.z, 0.0, 0.0],
             Self::Coat { index, roughness } => [3.0, index, roughness, 0.0, 0.0, 0.0, 0.0],
+            Self::Metallic => [4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         }
     }
 }
@@ -201,8 +259,10 @@ pub struct Finish {
     pub colour: Rgb,
     /// The image of the colours.
     pub colours: Option<Map>,
-    /// The fraction of the colour that is reflected as by a mirror, not scattered.
-    pub metal: f64,
+    /// The fraction of the surface that is metal.
+    pub metal: Factor,
+    /// How rough the metal is, or the glass.
+    pub roughness: Factor,
     /// The further mirror reflectivity.
     pub specular: Rgb,
     /// The emitted light, or the factor of the image's light.
@@ -228,7 +288,8 @@ impl Default for Finish {
         Self {
             colour: Rgb::ONE,
             colours: None,
-            metal: 0.0,
+            metal: 0.0.into(),
+            roughness: 1.0.into(),
             specular: Rgb::ZERO,
             emission: Rgb::ZERO,
             emissions: None,
@@ -247,24 +308,30 @@ impl Finish {
     pub fn maps(&self) -> impl Iterator<Item = &Map> {
         let normals = self.normals.iter().map(|(map, _)| map);
         let opacity = self.opacity.iter().flat_map(|opacity| &opacity.map);
-        self.colours.iter().chain(&self.emissions).chain(normals).chain(opacity)
+        let numbers = [&self.metal, &self.roughness].into_iter().flat_map(|factor| &factor.map);
+        let numbers = numbers.map(|(map, _)| map);
+        self.colours.iter().chain(&self.emissions).chain(normals).chain(opacity).chain(numbers)
     }
 
     /// Calls a function with the contents of the material, as bytes.
     pub fn bytes_of(&self, each: &mut dyn FnMut(&[u8])) {
-        let Self { colour, metal, specular, emission, shininess, highlight, transparency, .. } = self;
+        let Self { colour, metal, roughness, specular, emission, shininess, highlight, transparency, .. } =
+            self;
         let colours =
             [colour, specular, emission, highlight].into_iter().flat_map(|colour| colour.to_array());
         let slopes = self.normals.as_ref().map_or(0.0, |(_, slopes)| *slopes);
         let opacity = self.opacity.as_ref();
         let least = opacity.and_then(|opacity| opacity.cutoff).unwrap_or(0.0);
         let factor = opacity.map_or(1.0, |opacity| opacity.factor);
-        let numbers = colours.chain([*metal, *shininess, *transparency, slopes, least, factor]);
+        let channel = |of: &Factor| of.map.as_ref().map_or(0.0, |(_, channel)| *channel as f64);
+        let forged = [metal, roughness].into_iter().flat_map(|of| [of.factor, channel(of)]);
+        let numbers = colours.chain(forged).chain([*shininess, *transparency, slopes, least, factor]);
         let polish = self.polish.map_or([0.0; 7], Polish::numbers);
         numbers.chain(polish).for_each(|number| each(&number.to_le_bytes()));
         let normals = self.normals.as_ref().map(|(map, _)| map);
         let opacity = opacity.and_then(|opacity| opacity.map.as_ref());
-        for map in [self.colours.as_ref(), self.emissions.as_ref(), normals, opacity] {
+        let [metal, roughness] = [metal, roughness].map(|of| of.map.as_ref().map(|(map, _)| map));
+        for map in [self.colours.as_ref(), self.emissions.as_ref(), normals, opacity, metal, roughness] {
             each(&[u8::from(map.is_some())]);
             let Some(Map { texture, matrix, offset, wrap, is_sharp }) = map else { continue };
             let numbers = matrix.to_cols_array().into_iter().chain(offset.to_array());
@@ -274,11 +341,27 @@ impl Finish {
         }
     }
 
-    /// Sets the mirrored fraction of the colour for a metal of this roughness. A rough metal gives no clear mirror
-    /// images, and the rest of its light is rendered as scattered.
-    pub fn forge(&mut self, metal: f64, roughness: f64) {
-        let smoothness = 1.0 - roughness.clamp(0.0, 1.0);
-        self.metal = metal.clamp(0.0, 1.0) * smoothness * smoothness;
+    /// Returns the fraction of the colour that a point reflects as by a mirror, and does not scatter. `place` returns its
+    /// position in an image, in texels.
+    pub fn mirrored(&self, place: impl Fn(&Map) -> Option<DVec2>) -> f64 {
+        self.mirrored_by(self.metal.at(&place), self.roughness.at(&place))
+    }
+
+    /// Returns the least and the greatest [mirrored](Self::mirrored) fraction.
+    pub fn mirrored_range(&self) -> [f64; 2] {
+        let ([little, much], [smooth, rough]) = (self.metal.range(), self.roughness.range());
+        [self.mirrored_by(little, rough), self.mirrored_by(much, smooth)]
+    }
+
+    /// Returns the mirrored fraction of a metal. A rough one without facets gives no clear mirror images, and the rest of its
+    /// light is rendered as scattered.
+    fn mirrored_by(&self, metal: f64, roughness: f64) -> f64 {
+        let smoothness = 1.0 - roughness;
+        match self.polish {
+            Some(Polish::Metal { .. }) => 1.0,
+            Some(Polish::Metallic) => metal,
+            _ => metal * smoothness * smoothness,
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Material files of OBJ.
 
 use super::blocks::{self, Words, words};
-use super::finish::{Finish, Map, Opacity};
+use super::finish::{Factor, Finish, Map, Opacity};
 use super::model::{MemoryBudget, Model, Remark};
 use super::textures::{Textures, first_of};
 use glam::{DMat2, DVec2, DVec3};
@@ -18,7 +18,7 @@ use tabray_world::texture::{CUTOFF, Texture};
 const LONGEST: u64 = 1 << 26;
 
 /// The keywords of a material that are used, or that do not affect its appearance here: ambient light is the scene's.
-const KNOWN: [&str; 21] = [
+const KNOWN: [&str; 23] = [
     "newmtl",
     "illum",
     "Ka",
@@ -35,6 +35,8 @@ const KNOWN: [&str; 21] = [
     "map_Kd",
     "map_Ke",
     "map_d",
+    "map_Pr",
+    "map_Pm",
     "map_Bump",
     "map_bump",
     "bump",
@@ -149,6 +151,9 @@ struct Raw {
     shininess: f64,
     roughness: Option<f64>,
     metal: f64,
+    /// The images of the roughness and of the metal, which replace the numbers.
+    roughnesses: Option<Map>,
+    metals: Option<Map>,
     has_index: bool,
 }
 
@@ -225,9 +230,9 @@ impl Raw {
             "Tr" => self.transparency = Some(number(&mut words)?.clamp(0.0, 1.0)),
             "map_Kd" => finish.colours = map(words, place, textures)?.map(|(map, _)| map),
             "map_Ke" => finish.emissions = map(words, place, textures)?.map(|(map, _)| map),
-            "map_d" => {
-                self.opacities = map(words, place, textures)?.map(|(map, _)| map);
-            }
+            "map_d" => self.opacities = map(words, place, textures)?.map(|(map, _)| map),
+            "map_Pr" => self.roughnesses = map(words, place, textures)?.map(|(map, _)| map),
+            "map_Pm" => self.metals = map(words, place, textures)?.map(|(map, _)| map),
             "map_Bump" | "map_bump" | "bump" | "norm" => {
                 let bumps = map(words, place, textures)?;
                 // Programs also write normal maps where the format expects heights.
@@ -245,7 +250,7 @@ impl Raw {
     /// Returns the appearance of the material, and adds properties that are not rendered to `unseen`.
     fn finish(self, covers_in_part: bool, unseen: &mut BTreeSet<String>) -> Finish {
         let Self { mut finish, opacity, transparency, illumination, mirror, shininess, .. } = self;
-        let Self { roughness, metal, has_index, opacities, .. } = self;
+        let Self { roughness, roughnesses, metal, metals, has_index, opacities, .. } = self;
         if finish.colours.is_some() && finish.colour == Rgb::ZERO {
             // Some programs write black if an image gives the colours.
             finish.colour = Rgb::ONE;
@@ -253,7 +258,12 @@ impl Raw {
         if finish.emissions.is_some() && finish.emission == Rgb::ZERO {
             finish.emission = Rgb::ONE;
         }
-        finish.forge(metal, roughness.unwrap_or(1.0));
+        // Some programs write 0 beside an image.
+        let factor = |number: f64, map: Option<Map>| {
+            map.map_or_else(|| number.into(), |map| Factor::of_image(1.0, map, 0))
+        };
+        finish.metal = factor(metal, metals);
+        finish.roughness = factor(roughness.unwrap_or(1.0), roughnesses);
         let mut hide = |is_hidden: bool, word: &str| {
             if is_hidden {
                 unseen.insert(word.to_owned());

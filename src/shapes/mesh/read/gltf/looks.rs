@@ -2,7 +2,7 @@
 
 use super::buffers::{Buffers, data, unescaped};
 use super::json::{self, Gltf, SpecularGlossiness, Transform};
-use crate::mesh::read::finish::{Finish, Map, Opacity, Polish, Wrap};
+use crate::mesh::read::finish::{Factor, Finish, Map, Opacity, Polish, Wrap};
 use crate::mesh::read::model::{MemoryBudget, Model, Remark};
 use crate::mesh::read::textures::{Textures, first_of};
 use glam::{DMat2, DVec2, DVec3};
@@ -10,6 +10,7 @@ use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
+use tabray_world::interface::shininess;
 use tabray_world::material::Rgb;
 use tabray_world::text;
 use tabray_world::texture::{CUTOFF, Texture};
@@ -138,20 +139,19 @@ impl Looks<'_> {
         let slopes = material.normal_texture.as_ref().and_then(|normals| normals.scale).unwrap_or(1.0);
         finish.normals = normals.map(|map| (map, slopes));
         self.set_opacity(&mut finish, material, *alpha);
-        let (mut metal, mut roughness) = (*metallic_factor, *roughness_factor);
-        if let Some(map) = self.map(metallic_roughness_texture.as_ref())? {
-            let DVec3 { y, z, .. } = mean(&map.texture);
-            (metal, roughness) = (metal * z, roughness * y);
-            self.unseen.insert("metallicRoughnessTexture (its mean is)".to_owned());
-        }
-        finish.forge(metal, roughness);
-        finish.polish = self.polish(material, &finish, [metal, roughness]);
-        if let Some(Polish::Metal { roughness, .. }) = finish.polish {
-            finish.metal = 1.0;
-            // Lamps without a size show as highlights about as wide as the facets scatter.
-            let width = roughness * roughness;
-            finish.shininess = if roughness > 0.1 { 2.0 / (width * width) - 2.0 } else { 0.0 };
-        }
+        let map = self.map(metallic_roughness_texture.as_ref())?;
+        let factor = |factor: f64, channel: usize| match &map {
+            Some(map) => Factor::of_image(factor, map.clone(), channel),
+            None => factor.into(),
+        };
+        (finish.metal, finish.roughness) = (factor(*metallic_factor, 2), factor(*roughness_factor, 1));
+        finish.polish = self.polish(material, &finish);
+        finish.shininess = match finish.polish {
+            Some(Polish::Metal { roughness, .. }) => shininess(roughness),
+            // So that such materials do not differ. Each point has its own.
+            Some(Polish::Metallic) => shininess(1.0),
+            _ => 0.0,
+        };
         if let Some(other) = material.extensions.get(SPECULAR_GLOSSINESS) {
             let other = SpecularGlossiness::deserialize(other)
                 .map_err(|error| format!("one of its materials is not glTF: {error}"))?;
@@ -162,14 +162,9 @@ impl Looks<'_> {
         Ok(finish)
     }
 
-    /// Returns what a material is where it is the same at all points: glass with an inside, metal, or a coat. Thin glass is
-    /// a pane that light passes unbent.
-    fn polish(
-        &mut self,
-        material: &json::Material,
-        finish: &Finish,
-        [metal, roughness]: [f64; 2],
-    ) -> Option<Polish> {
+    /// Returns what a material is besides its colours: glass with an inside, metal, or a coat. Thin glass is a pane that
+    /// light passes unbent.
+    fn polish(&mut self, material: &json::Material, finish: &Finish) -> Option<Polish> {
         if !self.covers_in_part {
             let names =
                 [VOLUME, CLEARCOAT].into_iter().filter(|name| material.extensions.contains_key(*name));
@@ -178,7 +173,7 @@ impl Looks<'_> {
         }
         let number = |name: &str, number: &str| material.extensions.get(name)?.get(number)?.as_f64();
         let index = number("KHR_materials_ior", "ior").filter(|index| *index >= 1.0).unwrap_or(1.5).min(4.0);
-        let roughness = roughness.clamp(0.0, 1.0);
+        let ([metal, _], [_, roughness]) = (finish.metal.range(), finish.roughness.range());
         if finish.transparency > 0.0
             && number(VOLUME, "thicknessFactor").is_some_and(|thickness| thickness > 0.0)
         {
@@ -187,10 +182,13 @@ impl Looks<'_> {
             let left = Rgb::new(channel(0), channel(1), channel(2)).clamp(Rgb::splat(1e-6), Rgb::ONE);
             let at = number(VOLUME, "attenuationDistance").filter(|at| *at > 0.0);
             let left = if at.is_some() { left } else { Rgb::ONE };
-            return Some(Polish::Glass { index, roughness, left, at: at.unwrap_or(1.0) });
+            let varies = finish.roughness.varies();
+            return Some(Polish::Glass { index, roughness, varies, left, at: at.unwrap_or(1.0) });
         }
+        let varies = finish.metal.varies() || finish.roughness.varies();
         // Very rough metal is rendered as scattering, so that any lamp lights it.
         if metal >= 0.5
+            && !varies
             && roughness <= ROUGHEST
             && finish.colours.is_none()
             && !self.tints
@@ -207,7 +205,8 @@ impl Looks<'_> {
         if coat > 0.0 {
             self.unseen.insert(CLEARCOAT.to_owned());
         }
-        None
+        let [_, most] = finish.metal.range();
+        (varies && most > 0.0 && finish.transparency == 0.0).then_some(Polish::Metallic)
     }
 
     /// Sets how opaque a material is, by the alpha of its images times this factor.
@@ -247,7 +246,7 @@ impl Looks<'_> {
             None => (metal, diffuse.lerp(specular, metal)),
         };
         finish.colour = colour;
-        finish.forge(metal, 1.0 - material.glossiness_factor);
+        (finish.metal, finish.roughness) = (metal.into(), (1.0 - material.glossiness_factor).into());
         Ok(())
     }
 
@@ -312,10 +311,3 @@ impl Looks<'_> {
 const CLAMP: u32 = 33071;
 const MIRROR: u32 = 33648;
 const NEAREST: u32 = 9728;
-
-/// Returns the mean of an image's texels.
-fn mean(texture: &Texture) -> DVec3 {
-    let [width, height] = texture.size();
-    let texels = (0..height).flat_map(|row| (0..width).map(move |column| texture.numbers(column, row)));
-    texels.sum::<DVec3>() / (f64::from(width) * f64::from(height)).max(1.0)
-}
