@@ -52,7 +52,7 @@ pub struct UndecidedPixels {
     pub at: DVec3,
 }
 
-/// The estimated noise of some of the pixels that take several samples.
+/// The estimated noise of pixels that take several samples, one in eight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
     /// The number of pixels.

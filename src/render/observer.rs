@@ -35,7 +35,7 @@ pub enum Count {
     /// A pixel took a number of samples, where pixels differ in that.
     Sampled(u32),
     /// The mean square error of a pixel's channels as they are shown, where 1 is white, estimated by the two halves of
-    /// its samples.
+    /// its samples; of one pixel in eight.
     Noise(f64),
     /// The error of a pixel's colour is bounded.
     Bounded {

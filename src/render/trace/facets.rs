@@ -62,7 +62,7 @@ pub(super) struct Facets {
     geometric: DVec3,
     /// The unit vector toward the viewer.
     toward: DVec3,
-    /// The parameter alpha of the distribution.
+    /// The parameter alpha of the distribution; 0 where the surface is smooth.
     width: f64,
 }
 
@@ -91,7 +91,7 @@ impl Facets {
     /// otherwise.
     pub fn density_of(&self, dir: DVec3) -> f64 {
         let is_above = dir.dot(self.normal) > 0.0 && dir.dot(self.geometric) > 0.0;
-        let is_aimed_at = is_above && self.width != 0.0;
+        let is_aimed_at = is_above && self.width * self.width != 0.0;
         if is_aimed_at { self.toward(dir).iter().map(|(_, density)| density).sum() } else { f64::INFINITY }
     }
 
@@ -125,7 +125,7 @@ impl Facets {
     fn density(&self, facet: DVec3) -> f64 {
         let Self { normal, toward, width, .. } = *self;
         let (cosine, seen, square) = (facet.dot(normal), toward.dot(normal).max(0.0), width * width);
-        if cosine <= 0.0 || width == 0.0 {
+        if cosine <= 0.0 || square == 0.0 {
             return 0.0;
         }
         let spread = facet.cross(normal).length_squared() + square * cosine * cosine;

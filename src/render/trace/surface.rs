@@ -137,8 +137,8 @@ impl Surface {
     pub fn cover(&mut self, object: &Object, count: usize) {
         self.coverage.clear();
         if object.shader.covers_in_part() {
-            let coverage = (0..count).map(|lane| object.shader.coverage_at(&self.point(lane)));
-            self.coverage = coverage.collect();
+            let at = |lane: usize| seen_at(&self.points, &self.seen, lane);
+            self.coverage.extend((0..count).map(|lane| object.shader.coverage_at(&at(lane))));
         }
     }
 
@@ -147,16 +147,12 @@ impl Surface {
         self.glosses.clear();
         self.exponents.clear();
         if material.interface.as_ref().is_some_and(|interface| interface.varies()) {
-            self.glosses = (0..count).map(|lane| shader.gloss(&self.point(lane))).collect();
+            let at = |lane: usize| seen_at(&self.points, &self.seen, lane);
+            self.glosses.extend((0..count).map(|lane| shader.gloss(&at(lane))));
             let own = material.shininess;
             let exponent = |gloss: &Option<Gloss>| gloss.map_or(own, |gloss| shininess(gloss.roughness));
             self.exponents.extend(self.glosses.iter().map(exponent));
         }
-    }
-
-    /// Returns a point as the object's shader sees it.
-    fn point(&self, lane: usize) -> SurfacePoint {
-        self.seen.get(lane).copied().unwrap_or_else(|| SurfacePoint::at(self.points.get(lane)))
     }
 
     /// Returns how rays cross the surface at a point, given the interface of its material.
@@ -289,6 +285,11 @@ impl Surface {
             None => Colours::Each(self.specular.view(count)),
         }
     }
+}
+
+/// Returns a point as the object's shader sees it.
+fn seen_at(points: &VectorList, seen: &[SurfacePoint], lane: usize) -> SurfacePoint {
+    seen.get(lane).copied().unwrap_or_else(|| SurfacePoint::at(points.get(lane)))
 }
 
 /// Returns how a ray along `dir` crosses an interface, given the bent normal and that of the surface itself.
