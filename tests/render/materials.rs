@@ -200,6 +200,19 @@ fn a_rough_surface_is_smooth_where_pixels_have_one_sample() {
     assert_ne!(trace::pixel(&rough, 4, 3), trace::pixel(&smooth, 4, 3));
 }
 
+/// Facets of which the square of the width is 0 have no density, and mirror lamps by chance.
+#[test]
+fn the_least_roughness_is_none() {
+    let picture = |roughness: &str| {
+        render(&model(&format!(
+            "look_at eye {{ pixeldim 24 24 position 0 3 3 target 0 0 0 angle 40 samples 4 }}
+             area_light panel {{ location 0 3 -3 target 0 0 0 dimensions 1 1 emissivity 2 2 2 }}
+             metal m {{ roughness {roughness} }} plane floor {{ material m normal 0 1 0 point 0 0 0 }}"
+        )))
+    };
+    assert_eq!(picture("1e-100"), picture("0"));
+}
+
 /// A ball under two lamps, one of which has a size, with another object beside it.
 fn ball(material: &str, beside: &str) -> RgbImage {
     render(&model(&format!(

@@ -125,7 +125,7 @@ impl Facets {
     fn density(&self, facet: DVec3) -> f64 {
         let Self { normal, toward, width, .. } = *self;
         let (cosine, seen, square) = (facet.dot(normal), toward.dot(normal).max(0.0), width * width);
-        if cosine <= 0.0 || square == 0.0 {
+        if cosine <= 0.0 {
             return 0.0;
         }
         let spread = facet.cross(normal).length_squared() + square * cosine * cosine;
