@@ -224,7 +224,7 @@ def test_answers_are_pickled_and_copied_with_all_of_their_arrays(balls):
     hits, crossings = balls.hits(*rays(50)), balls.crossings(*rays(50))
     for one in [hits, hits[hits.verdict == 1], crossings]:
         names = [name for name in dir(one) if isinstance(getattr(one, name), np.ndarray)]
-        assert len(names) == (14 if one is crossings else 12)
+        assert len(names) == (15 if one is crossings else 13)
         for other in [pickle.loads(pickle.dumps(one)), copy.copy(one), copy.deepcopy(one)]:
             assert type(other) is type(one) and repr(other) == repr(one)
             for name in names:
