@@ -109,7 +109,7 @@ fn an_open_surface_becomes_a_mesh_with_a_thickness() {
             &["--thickness", "0.1", "--error", "0.1"],
             "an error of 0.1 is too large for a thickness of 0.1",
         ),
-        ("d", &["--thickness", "0.001", "--max-memory", "64MiB"], "give an `--error` of about "),
+        ("d", &["--thickness", "0.001", "--max-memory", "64MiB"], "give a `--thickness` of about "),
         ("d", &["--thickness", "1e-9"], "give a larger `--error`"),
     ] {
         let (status, _, err) = made(name, more);

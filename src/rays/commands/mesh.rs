@@ -29,7 +29,8 @@ const LISTED: usize = 5;
 ///
 /// The object must be closed: an implicit, a surface of revolution, a solid, or a copy of one. If its box cuts an
 /// implicit, the faces of the box close it. With `--thickness`, the surface may be open, or parametric: the mesh is then
-/// that of all points within half of the thickness of it. The scene needs no camera.
+/// that of all points within half of the thickness of it. The distance from a parametric surface is computed, not proven.
+/// The scene needs no camera.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Args {
@@ -105,11 +106,23 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             let message = format!("an error of {error} is too large for a thickness of {thickness}");
             return Err(Failure::usage(message).help("give an `--error` of less than half of the thickness"));
         }
-        // A part of the error is for the distance from the surface, and the rest for the triangles.
+        // Half of the error is for the distance from the surface, the other half for the triangles.
         Some(thickness) => {
             let (sheet, share) = (Sheet::of(&model, &args.name).map_err(refused)?, error / 2.0);
             let body = renderer.run(|| sheet.thickened(thickness, share, memory));
-            (body.map_err(|fault| no_mesh(name, (error, share), &fault))?, share)
+            let body = body.map_err(|fault| match fault {
+                // An error of which there is a mesh would be too large for the thickness.
+                NoMesh::TooMany(least) if 2.0 * least >= thickness / 2.0 => {
+                    let least = short(8.0 * 2.0 * least);
+                    Failure::usage(format!(
+                        "`{name}` is too large for a thickness of {}",
+                        shortest(thickness)
+                    ))
+                    .help(format!("give a `--thickness` of about {least} or more"))
+                }
+                fault => no_mesh(name, (error, share), &fault),
+            });
+            (body?, share)
         }
     };
     let progress = OnceLock::new();
@@ -229,7 +242,7 @@ fn no_body(scene: &Path, name: &str, fault: NoBody) -> Failure {
         }
         NoBody::Unproven => (
             format!("`{name}` has no equation, so nothing is proven about its surface"),
-            "objects of other types can be made thick".to_owned(),
+            "a thickness takes a type with an equation, such as `implicit`, `disc` or `mesh`".to_owned(),
         ),
         NoBody::Mesh => (
             format!("`{name}` is a mesh already, or may be made of one"),

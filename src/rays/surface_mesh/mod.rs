@@ -107,24 +107,7 @@ pub fn mesh(
     let last = last.max(MIN_HALVINGS);
     let done = |steps: usize| tell(Event::Done(steps));
     if body.thick().is_some() {
-        // No point of a triangle is farther from a corner than in one with equal sides, and the distance that bounds the
-        // body changes by no more.
-        let last = cells.fit(MOST_OF * 3f64.sqrt() * error / 2.0);
-        while cells.halvings() < last {
-            cells
-                .halve(&may_be_crossed, most, &done)
-                .map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
-        }
-        if cells.list.len() > MANY_CELLS {
-            let vertices = VERTICES * cells.list.len();
-            tell(Event::Expected { triangles: 2 * vertices, steps: vertices * (1 + ROUNDS as usize) });
-        }
-        let triangles = Triangles::of(&cells, body, &done);
-        if triangles.faces.is_empty() {
-            return Err(NoMesh::Empty);
-        }
-        let far = proof::large(&cells, &triangles, error / 2.0);
-        return finished(&cells, triangles, body, (error, far), None, &done);
+        return of_distance(body, error, most, tell);
     }
     loop {
         cells.halve(&may_be_crossed, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
@@ -159,6 +142,33 @@ pub fn mesh(
             tell(expected(&cells, &triangles, body, error, last));
         }
     }
+}
+
+/// Makes the mesh of the points near a surface, without a search for cells that suffice: no point of a triangle is farther
+/// from a corner than in one with equal sides, and the distance that bounds the body changes by no more.
+fn of_distance(
+    body: &Body<'_>,
+    error: f64,
+    most: usize,
+    tell: &(dyn Fn(Event) + Sync),
+) -> Result<SurfaceMesh, NoMesh> {
+    let mut cells = Cells::enclosing(&body.bounds);
+    let may_be_crossed = |middle: DVec3, half: f64| body.contains(middle, half).is_none();
+    let done = |steps: usize| tell(Event::Done(steps));
+    let last = cells.fit(MOST_OF * 3f64.sqrt() * error / 2.0);
+    while cells.halvings() < last {
+        cells.halve(&may_be_crossed, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
+    }
+    if cells.list.len() > MANY_CELLS {
+        let vertices = VERTICES * cells.list.len();
+        tell(Event::Expected { triangles: 2 * vertices, steps: vertices * (1 + ROUNDS as usize) });
+    }
+    let triangles = Triangles::of(&cells, body, &done);
+    if triangles.faces.is_empty() {
+        return Err(NoMesh::Empty);
+    }
+    let far = proof::large(&cells, &triangles, error / 2.0);
+    finished(&cells, triangles, body, (error, far), None, &done)
 }
 
 /// Estimates the work, from the errors with which these cells would do: halved once, they do with a quarter of the error

@@ -438,3 +438,44 @@ impl<T: ScalarIntersect> Brackets for LeavingBounds<'_, T> {
         self.shape.t_bounds(&ray, &RayRange { far, origin_side, origin_error, ..RayRange::ALL })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::soa::{LANES, Vectors};
+    use glam::DVec3;
+
+    /// A shape whose distance is the error of a ray's origin.
+    struct Echo;
+
+    impl Hittable for Echo {
+        fn distance(&self, _ray: &Ray, range: &RayRange) -> f64 {
+            range.origin_error
+        }
+
+        fn normal(&self, _at: DVec3) -> DVec3 {
+            DVec3::Z
+        }
+
+        fn facts(&self) -> Facts {
+            Facts::unbounded(1.0)
+        }
+    }
+
+    #[test]
+    fn a_ray_that_leaves_a_shape_counts_with_its_own_error() {
+        let shape = Shape::new(Echo);
+        let (origin, dir) = (Vectors::<LANES>::of(DVec3::ZERO), Vectors::<LANES>::of(DVec3::Z));
+        let errors: [f64; LANES] = std::array::from_fn(|lane| 1.0 + lane as f64);
+        let sides = [Side::Outside; LANES];
+        let rays = RayPacket::new(origin.view(LANES), dir.view(LANES), LANES as f64);
+        let rays = rays.with_errors(&errors).leaving(Some(&sides));
+        let (mut near, mut far) = ([0.0; LANES], [0.0; LANES]);
+        for cpu in Cpu::all() {
+            PacketIntersect::brackets(&shape, cpu, rays, &[MISS; LANES], (&mut near, &mut far));
+            assert_eq!((near, far), (errors, errors), "{cpu}");
+        }
+        let part = rays.part(2..4);
+        assert_eq!([part.error(0), part.error(1)], [3.0, 4.0]);
+    }
+}
