@@ -2,7 +2,7 @@
 
 use super::{fplane, plane};
 use std::sync::Arc;
-use tabray::exact::interval::Fine;
+use tabray::exact::interval::Wide;
 use tabray::prelude::*;
 use tabray::shapes::rectangle::{Rectangle, known_sides};
 
@@ -61,7 +61,7 @@ impl Picture {
             }
             None => DVec2::ONE,
         };
-        let n = Fine::constant;
+        let n = Wide::constant;
         let texel = [0, 1].map(|side| Known {
             rounded: screen[side] / pixels[side],
             enclosed: n(screen[side]) / n(pixels[side]),

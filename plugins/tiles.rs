@@ -1,6 +1,6 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
-use tabray::exact::interval::Fine;
+use tabray::exact::interval::Wide;
 use tabray::prelude::*;
 
 pub static WIDTH: Pparm<f64> = Pparm::or("width", "the width of a tile", 0.5).unit("world units").positive();
@@ -100,7 +100,7 @@ pub struct Grid {
 impl Grid {
     /// Makes the tiles of an entity whose table has [`WIDTH`].
     pub fn new(args: &Args) -> Self {
-        let (width, n) = (args.get(&WIDTH), Fine::constant);
+        let (width, n) = (args.get(&WIDTH), Wide::constant);
         Self { per_unit: Known { rounded: 1.0 / width, enclosed: n(1.0) / n(width) } }
     }
 

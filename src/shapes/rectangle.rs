@@ -4,7 +4,7 @@ use crate::plane::Plane;
 use glam::{DMat3, DVec2, DVec3};
 use tabray_exact::double_double::vectors::{cross, product, unit};
 use tabray_exact::double_double::{DoubleDouble, power_of_two, scaled};
-use tabray_exact::interval::Fine;
+use tabray_exact::interval::Wide;
 use tabray_exact::scalar::{self, Scalar, constants, dot, per_axis};
 use tabray_world::accuracy::AccuracyTag;
 use tabray_world::geometry::aabb::{Aabb, larger, smaller};
@@ -64,10 +64,10 @@ pub fn along_sides<N: Scalar>(normal: [N; 3], xdir: [N; 3], vector: [N; 3]) -> [
 
 /// Returns the directions of the sides of such a rectangle, which are rounded to these.
 pub fn known_sides(normal: DVec3, xdir: DVec3, rounded: [DVec3; 2]) -> [[Known; 3]; 2] {
-    let (normal, xdir): ([Fine; 3], _) = (constants(normal), constants(xdir));
+    let (normal, xdir): ([Wide; 3], _) = (constants(normal), constants(xdir));
     let (square, across) = (dot(normal, normal), dot(normal, xdir));
     let first = per_axis(|axis| square * xdir[axis] - across * normal[axis]);
-    let unit = |side: [Fine; 3]| side.map(|along| along / dot(side, side).sqrt());
+    let unit = |side: [Wide; 3]| side.map(|along| along / dot(side, side).sqrt());
     let sides = [unit(first), unit(scalar::cross(normal, xdir))];
     [0, 1].map(|side| Known::each(rounded[side].to_array(), sides[side]))
 }

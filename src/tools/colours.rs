@@ -2,7 +2,6 @@
 //!
 //! A decision that intervals leave open widens the colour, or opens the pixel.
 
-use f256::f256;
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use tabray_core::geometry::sight::Sight;
@@ -119,8 +118,7 @@ impl<'p, 'm> Prover<'p, 'm> {
         if quick.is_final {
             return Pixel { channels: quick.pixel.channels.map(|verdict| quick.named(verdict)) };
         }
-        let wide = self.verdicts::<f256>(x, y, bytes);
-        let last = if wide.is_final { wide } else { self.verdicts::<Fraction>(x, y, bytes) };
+        let last = self.verdicts::<Fraction>(x, y, bytes);
         let may_round = quick.is_enclosed;
         let channels = per_axis(|channel| match last.pixel.channels[channel] {
             Verdict::Contradicted if may_round && quick.pixel.channels[channel] == Verdict::Open => {
@@ -280,7 +278,7 @@ mod tests {
         let plan = Plan::new(&model);
         let prover = Prover::new(&plan);
         is_enclosed(red::<f64>(&prover), [numerator, denominator], 1e-12);
-        is_enclosed(red::<f256>(&prover), [numerator, denominator], 1e-60);
+        is_enclosed(red::<Fraction>(&prover), [numerator, denominator], 1e-60);
         is_enclosed(red::<Fraction>(&prover), [numerator, denominator], 1e-60);
         assert_eq!(prover.traced(1, 1).verdict(), Verdict::Proven);
         let byte = (255.0 * numerator / denominator) as u8;

@@ -2,13 +2,12 @@
 //! gradient there. Rounding to `f64` alone would be as large as the errors of good hits, so what 53 bits leave open is
 //! computed in 237.
 
-use f256::f256;
 use glam::DVec3;
 use tabray_core::geometry::sight::Sight;
 use tabray_core::world::any_shape::AnyShape;
 use tabray_core::world::certify::{Enclosure, Precise, Precision, ProofMethods, gradient};
 use tabray_exact::dual::Dual;
-use tabray_exact::interval::{Float, Interval};
+use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::Scalar;
 
 /// Returns the distance of a hit from the surface, to first order and in world units, where it is more than what is
@@ -32,7 +31,7 @@ fn of_part(proven: &dyn ProofMethods, at: DVec3, part: usize, allowed: f64) -> O
     if coarse.high <= allowed {
         return Some(coarse.high);
     }
-    let fine = enclosed::<f256>(proven, at, part)?.middle().to_f64();
+    let fine = enclosed::<Fraction>(proven, at, part)?.middle().to_f64();
     fine.is_finite().then_some(fine)
 }
 

@@ -8,7 +8,7 @@ use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
-use tabray_exact::interval::Fine;
+use tabray_exact::interval::Wide;
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 /// How light continues at a surface: which fraction is reflected, and in which direction the rest is transmitted.
@@ -164,7 +164,7 @@ impl Medium {
     /// Makes a medium that leaves these fractions of light, more than 0 and at most 1, after the length `at`, in
     /// world units; `None` if it leaves all.
     pub fn new(left: DVec3, at: f64) -> Option<Self> {
-        let enclosed: [Fine; 3] = constants(left);
+        let enclosed: [Wide; 3] = constants(left);
         let logarithms = Known::each(left.map(libm::log).to_array(), enclosed.map(Scalar::ln));
         (left != DVec3::ONE).then_some(Self { left, logarithms, at })
     }

@@ -8,7 +8,7 @@ use crate::shader::{EnclosedShader, Looks};
 use glam::DVec3;
 use std::f64::consts::PI;
 use tabray_exact::affine::Affine;
-use tabray_exact::interval::{Fine, Interval};
+use tabray_exact::interval::{Interval, Wide};
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis, unit};
 
 /// A constant that is not a number of the scene itself, and that rounding changes.
@@ -17,12 +17,12 @@ pub struct Known {
     /// The constant as pictures take it.
     pub rounded: f64,
     /// Encloses the constant before any rounding.
-    pub enclosed: Fine,
+    pub enclosed: Wide,
 }
 
 impl Known {
     /// Joins a vector as pictures take it, and its enclosure.
-    pub fn each(rounded: [f64; 3], enclosed: [Fine; 3]) -> [Self; 3] {
+    pub fn each(rounded: [f64; 3], enclosed: [Wide; 3]) -> [Self; 3] {
         per_axis(|axis| Self { rounded: rounded[axis], enclosed: enclosed[axis] })
     }
 

@@ -10,7 +10,7 @@ use crate::surface_point::{Point, ShaderInputs, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 use tabray_exact::affine::Affine;
-use tabray_exact::interval::{Fine, Interval, Wide};
+use tabray_exact::interval::{Interval, Wide};
 use tabray_exact::scalar::constants;
 
 /// The origin and the unit of length of the pattern of a shader on one object.
@@ -145,10 +145,7 @@ pub trait Shader: Send + Sync {
 }
 
 /// A shader of any type, asked in any number. Every [`Shader`] is one.
-pub trait EnclosedShader:
-    Shader + Looks<f64> + Looks<Interval> + Looks<Affine> + Looks<Wide> + Looks<Fine>
-{
-}
+pub trait EnclosedShader: Shader + Looks<f64> + Looks<Interval> + Looks<Affine> + Looks<Wide> {}
 
 impl<T: Shader> EnclosedShader for T {}
 

@@ -235,7 +235,7 @@ type Bits = FBig<HalfEven, 2>;
 /// Asserts that an interval of 237 bits contains a number of 400 bits, and is no wider than this many ulps.
 #[track_caller]
 fn holds(interval: Wide, right: &Bits, units: f64, what: &str) {
-    let (low, high) = (widest(interval.low), widest(interval.high));
+    let [low, high] = interval.ends().map(widest);
     assert!(low <= *right && *right <= high, "{what}: {interval:?} does not hold {right}");
     let width = ((high - low) / right).to_f64().value().abs();
     assert!(width <= units * 2_f64.powi(-236), "{what}: {width:e} wide");
@@ -253,16 +253,16 @@ fn wide_intervals_hold_the_right_results() {
             f256::from(random.between(low, high)) * part
         };
         let (a, b) = (number(-9.0, 9.0), number(-9.0, 9.0));
-        let (x, y) = (Wide::point(a), Wide::point(b));
+        let (x, y) = (Wide::point(a.into()), Wide::point(b.into()));
         let (big_a, big_b) = (exactly(a), exactly(b));
         // A sum with cancellation is exact, and any other sum is within one ulp.
-        let (low, high) = (widest((x + y).low), widest((x + y).high));
+        let [low, high] = (x + y).ends().map(widest);
         assert!(low <= &big_a + &big_b && &big_a + &big_b <= high, "{a} + {b}");
         holds(x * y, &(&big_a * &big_b), 4.0, "product");
         holds(x / y, &(&big_a / &big_b), 4.0, "quotient");
         holds(x.powi(2), &(&big_a * &big_a), 4.0, "square");
         let (p, q) = (number(1e-3, 90.0), number(0.1, 3.0));
-        let (wide, big) = (Wide::point(p), exactly(p));
+        let (wide, big) = (Wide::point(p.into()), exactly(p));
         holds(wide.sqrt(), &big.sqrt(), 4.0, "square root");
         // Where a logarithm or a sine is near 0, its ulps are small.
         holds(wide.exp(), &big.exp(), 40.0, "exp");
@@ -274,13 +274,15 @@ fn wide_intervals_hold_the_right_results() {
         // The second end of a narrow interval follows from the first.
         for power in [-33, -40, -80, -160, -234] {
             let end = p + p * q * f256::from(2_f64.powi(power - 8));
-            let (narrow, big_end) = (Wide { low: p, high: end }, exactly(end));
+            let (narrow, big_end) = (Wide { low: p.into(), high: end.into() }, exactly(end));
             for (bounds, ends) in
                 [(narrow.exp(), [big.exp(), big_end.exp()]), (narrow.ln(), [big.ln(), big_end.ln()])]
             {
-                let (low, high) = (widest(bounds.low), widest(bounds.high));
-                let is_tight = bounds.width()
-                    < f256::from(1e3) * (end - p + p * f256::EPSILON) * bounds.magnitude().max(p);
+                let [low, high] = bounds.ends();
+                let size = Wide { low: p.into(), ..bounds }.magnitude();
+                let [_, size] = Wide::point(size).ends();
+                let is_tight = high - low < f256::from(1e3) * (end - p + p * f256::EPSILON) * size;
+                let [low, high] = [low, high].map(widest);
                 let holds = ends.iter().all(|end| low <= *end && *end <= high);
                 assert!(holds && is_tight, "{narrow:?}: {bounds:?}");
             }
@@ -289,7 +291,7 @@ fn wide_intervals_hold_the_right_results() {
         holds((x - y).choose(x * y, x / y), &chosen, 4.0, "choice");
         let power = (exactly(q) * big.ln()).exp();
         // The error of the logarithm is multiplied by the exponent.
-        holds(wide.pow(Wide::point(q)), &power, 1000.0, "power");
+        holds(wide.pow(Wide::point(q.into())), &power, 1000.0, "power");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::ray::QueryRay;
 use glam::{DVec2, DVec3};
-use tabray_exact::interval::{Interval, Wide};
+use tabray_exact::interval::{Float, Interval, Wide};
 use tabray_world::certify::{self, Precision};
 
 /// What is proven about a ray's first hit.

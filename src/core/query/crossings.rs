@@ -3,7 +3,6 @@
 use super::answer::{Answer, Verdict};
 use super::ray::QueryRay;
 use super::scene::Query;
-use f256::f256;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
@@ -37,7 +36,7 @@ struct Known {
     found: Vec<Found>,
     precision: Precision,
     /// The distance from which on nothing is known; infinite where all crossings are.
-    open: f256,
+    open: Fraction,
 }
 
 impl Query<'_> {
@@ -46,7 +45,7 @@ impl Query<'_> {
     /// edge. `is_tight` narrows all bounds with 237 bits.
     pub fn crossings(&self, ray: &QueryRay, t_max: f64, is_tight: bool) -> Vec<Crossing> {
         let first = if is_tight { Precision::Octuple } else { Precision::Double };
-        let near = self.near(ray, f256::INFINITY);
+        let near = self.near(ray, Fraction::INFINITY);
         let objects: Vec<_> = near.chunk_by(|one, other| self.number(*one) == self.number(*other)).collect();
         let mut known: Vec<_> = objects.iter().map(|parts| self.known(parts, ray, first)).collect();
         if !is_tight {
@@ -58,7 +57,7 @@ impl Query<'_> {
                 }
             }
         }
-        let open = known.iter().map(|of| of.open).fold(f256::INFINITY, Float::min);
+        let open = known.iter().map(|of| of.open).fold(Fraction::INFINITY, Float::min);
         let mut crossings = Vec::new();
         for (found, is_tied) in in_order(&known).into_iter().filter(|(found, _)| found.at.high < open) {
             let Found { object, at, enters, part, precision } = found;
@@ -76,7 +75,7 @@ impl Query<'_> {
         let answer = match open.is_finite() {
             false => miss,
             true => {
-                let bounds = ray.t(Wide { low: open, high: f256::INFINITY });
+                let bounds = ray.t(Wide { low: open, high: Fraction::INFINITY });
                 Answer { verdict: Verdict::Undecided, bounds, ..miss }.within(t_max)
             }
         };
@@ -86,13 +85,13 @@ impl Query<'_> {
 
     /// Returns what is known of the crossings of a ray and an object, given its parts.
     fn known(&self, parts: &[usize], ray: &QueryRay, precision: Precision) -> Known {
-        let (mut all, mut open) = (Vec::new(), f256::INFINITY);
+        let (mut all, mut open) = (Vec::new(), Fraction::INFINITY);
         for object in parts.iter().copied() {
             let shape = self.shape(object);
             let (found, end) = match precision {
                 Precision::Double => along::<f64>(shape, ray),
-                Precision::Octuple => match along::<f256>(shape, ray) {
-                    (found, open) if open.is_finite() => exactly(shape, ray).unwrap_or((found, open)),
+                Precision::Octuple => match along::<Fraction>(shape, ray) {
+                    (_, open) if open.is_finite() && misses(shape, ray) => (Vec::new(), Fraction::INFINITY),
                     known => known,
                 },
             };
@@ -115,37 +114,32 @@ impl Query<'_> {
 
 /// Compares the places of two crossings.
 fn nearer(one: &Found, other: &Found) -> Ordering {
-    one.at.low.total_cmp(&other.at.low).then(one.object.cmp(&other.object))
+    one.at.low.partial_cmp(&other.at.low).unwrap_or(Ordering::Equal).then(one.object.cmp(&other.object))
 }
 
 /// The crossings of a ray and a shape, each with its bounds, whether the ray enters, and the part; and the distance
 /// beyond which nothing is known.
-type Along = (Vec<(Wide, bool, usize)>, f256);
+type Along = (Vec<(Wide, bool, usize)>, Fraction);
 
 /// Returns the crossings of a ray and a shape in one precision.
 fn along<F: Precise>(shape: &AnyShape, ray: &QueryRay) -> Along {
     let line = ray.sight().line::<Interval<F>>();
-    let Some(proven) = shape.proven() else { return (Vec::new(), f256::of(0.0)) };
+    let Some(proven) = shape.proven() else { return (Vec::new(), Fraction::of(0.0)) };
     let (mut crossings, mut found) = (solid::Crossings::new(proven, &line, None), Vec::new());
     loop {
         match crossings.get(found.len()) {
             Ok(solid::Crossing { at, part, enters }) => {
-                found.push((F::widen(at).wide(), enters, part));
+                found.push((F::widen(at), enters, part));
             }
-            Err(end) if end == F::INFINITY => return (found, f256::INFINITY),
-            Err(end) => return (found, F::widen(Interval::point(end)).wide().low),
+            Err(end) if end == F::INFINITY => return (found, Fraction::INFINITY),
+            Err(end) => return (found, F::widen(Interval::point(end)).low),
         }
     }
 }
 
-/// Returns all crossings of a ray and a shape, found with fractions, which recognise a ray that passes exactly
-/// through an edge; `None` where they do not find all.
-fn exactly(shape: &AnyShape, ray: &QueryRay) -> Option<Along> {
-    if shape.certify(ray.sight(), Precision::Octuple) == Enclosure::Misses {
-        return Some((Vec::new(), f256::INFINITY));
-    }
-    let (found, open) = along::<Fraction>(shape, ray);
-    (!open.is_finite()).then_some((found, open))
+/// Tells whether a ray misses a shape, as one does that passes exactly through an edge.
+fn misses(shape: &AnyShape, ray: &QueryRay) -> bool {
+    shape.certify(ray.sight(), Precision::Octuple) == Enclosure::Misses
 }
 
 /// Returns all crossings in the order of their lower bounds, each with whether its bounds meet those of another.

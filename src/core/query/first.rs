@@ -1,7 +1,6 @@
 //! Which of a scene's objects a ray hits first, as far as intervals tell.
 
-use f256::f256;
-use tabray_exact::interval::{Float, Wide};
+use tabray_exact::interval::{Float, Fraction, Wide};
 use tabray_world::any_shape::AnyShape;
 use tabray_world::certify::{Enclosure, Precision};
 use tabray_world::geometry::sight::Sight;
@@ -38,7 +37,7 @@ pub enum FirstHits {
         /// The objects, in the order of their indices.
         any: Vec<Candidate>,
         /// A distance up to which something is certainly hit; infinite where perhaps nothing is.
-        end: f256,
+        end: Fraction,
     },
 }
 
@@ -99,12 +98,12 @@ pub fn first_by<'s>(
 }
 
 /// Returns a distance up to which a ray certainly hits one of some objects; infinite where none is known.
-pub fn last_end<'s>(objects: impl IntoIterator<Item = (usize, &'s AnyShape)>, sight: &Sight) -> f256 {
+pub fn last_end<'s>(objects: impl IntoIterator<Item = (usize, &'s AnyShape)>, sight: &Sight) -> Fraction {
     let ends = objects.into_iter().map(|(_, shape)| match shape.certify(sight, Precision::Double) {
         Enclosure::Hits(at) => at.high,
-        _ => f256::INFINITY,
+        _ => Fraction::INFINITY,
     });
-    ends.fold(f256::INFINITY, Float::min)
+    ends.fold(Fraction::INFINITY, Float::min)
 }
 
 /// Returns which of the objects may be hit first, given what is proven about each.
@@ -114,7 +113,7 @@ fn first(candidates: &[Candidate]) -> FirstHits {
         Enclosure::Hits(at) => Some(at.high),
         _ => None,
     });
-    let end = end.fold(f256::INFINITY, Float::min);
+    let end = end.fold(Fraction::INFINITY, Float::min);
     let is_near = |of: &&Candidate| match of.enclosure {
         Enclosure::Misses => false,
         Enclosure::Hits(Wide { low, .. }) | Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => {

@@ -1,8 +1,7 @@
 //! Rays whose numbers are exact.
 
-use f256::f256;
 use glam::DVec3;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_world::certify;
 use tabray_world::geometry::sight::Sight;
 
@@ -74,17 +73,17 @@ impl QueryRay {
             None => certify::bounds_in_world_units(at, &self.sight),
             Some(scale) => {
                 // A product with a power of 2 is exact: these numbers have exponents to spare.
-                let scale = f256::of(scale);
+                let scale = Fraction::of(scale);
                 Interval { low: rounded_down(at.low * scale), high: -rounded_down(-(at.high * scale)) }
             }
         }
     }
 
     /// Returns t in the ray's own unit, given in lengths of the sight's direction, rounded to the nearest.
-    pub(super) fn rounded_t(&self, at: f256) -> f64 {
+    pub(super) fn rounded_t(&self, at: Fraction) -> f64 {
         match self.scale {
             None => certify::in_world_units(Wide::point(at), &self.sight).high,
-            Some(scale) => (at * f256::of(scale)).to_f64(),
+            Some(scale) => (at * Fraction::of(scale)).to_f64(),
         }
     }
 
@@ -109,9 +108,9 @@ impl QueryRay {
 }
 
 /// Rounds a number down to an f64.
-fn rounded_down(number: f256) -> f64 {
+fn rounded_down(number: Fraction) -> f64 {
     let nearest = number.to_f64();
-    if f256::of(nearest) > number { nearest.next_down() } else { nearest }
+    if Fraction::of(nearest) > number { nearest.next_down() } else { nearest }
 }
 
 #[cfg(test)]
@@ -119,7 +118,7 @@ mod tests {
     use super::*;
 
     fn at(ray: &QueryRay, t: f64) -> Interval {
-        ray.t(Wide::point(f256::of(t)))
+        ray.t(Wide::point(Fraction::of(t)))
     }
 
     #[test]
@@ -144,8 +143,8 @@ mod tests {
     #[test]
     fn bounds_are_rounded_outward() {
         let ray = QueryRay::new(DVec3::ZERO, DVec3::X).expect("a ray");
-        let third = f256::of(1.0) / f256::of(3.0);
+        let third = Fraction::of(1.0) / Fraction::of(3.0);
         let Interval { low, high } = ray.t(Wide::point(third));
-        assert!(f256::of(low) < third && third < f256::of(high) && low.next_up() == high);
+        assert!(Fraction::of(low) < third && third < Fraction::of(high) && low.next_up() == high);
     }
 }

@@ -3,11 +3,10 @@
 use super::answer::{Answer, Surroundings, Verdict};
 use super::first::{Candidate, FirstHit, FirstHits, first_among, first_by, last_end};
 use super::ray::{QueryRay, Start};
-use f256::f256;
 use std::ops::Range;
 use std::slice;
 use tabray_exact::dual::Dual;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_render::observer::Hit;
 use tabray_render::plan::Plan;
 use tabray_render::trace;
@@ -88,7 +87,7 @@ impl<'m> Query<'m> {
     pub fn first(&self, ray: &QueryRay, found: Option<&Hit>) -> (FirstHits, Precision) {
         let end = match (&self.plan.tree, found) {
             (Some(_), Some(hit)) => last_end([(hit.index, self.shape(hit.index))], ray.sight()),
-            _ => f256::INFINITY,
+            _ => Fraction::INFINITY,
         };
         let near = self.near(ray, end);
         first_among(&near, &|place, precision| self.certify(ray, near[place], precision))
@@ -124,7 +123,7 @@ impl<'m> Query<'m> {
 
     /// Returns the objects that a ray may meet at or before a distance in lengths of the sight's direction, in the
     /// order of the scene; all of them where there are few.
-    pub(super) fn near(&self, ray: &QueryRay, end: f256) -> Vec<usize> {
+    pub(super) fn near(&self, ray: &QueryRay, end: Fraction) -> Vec<usize> {
         near(&self.plan, ray.sight(), end)
     }
 
@@ -147,7 +146,8 @@ fn newton(proven: &dyn ProofMethods, sight: &Sight, part: usize, within: Wide) -
         return None;
     }
     let middle = Wide::point(within.middle());
-    let value = HitProofs::<f256>::slope(proven, sight.line::<Wide>().along(Dual::fixed(middle)), part).value;
+    let value =
+        HitProofs::<Fraction>::slope(proven, sight.line::<Wide>().along(Dual::fixed(middle)), part).value;
     let Wide { low, high } = middle - value / Wide::from_f64(slope);
     let narrow = Wide { low: Float::max(low, within.low), high: Float::min(high, within.high) };
     let is_narrow = narrow.low <= narrow.high && narrow.width().to_f64() <= NARROW * narrow.low.to_f64();
@@ -298,7 +298,7 @@ pub fn is_contradicted(plan: &Plan, sight: &Sight) -> bool {
 }
 
 /// Returns the objects that a ray may meet at or before a distance, as [`Query::near`] does.
-fn near(plan: &Plan, sight: &Sight, end: f256) -> Vec<usize> {
+fn near(plan: &Plan, sight: &Sight, end: Fraction) -> Vec<usize> {
     let Some(tree) = &plan.tree else { return (0..plan.model.objects.len()).collect() };
     let line = sight.line::<Interval>();
     let mut near = plan.unbounded.clone();
@@ -309,7 +309,7 @@ fn near(plan: &Plan, sight: &Sight, end: f256) -> Vec<usize> {
 
 /// Returns a lower bound on the distance at which a line is in a box, which is widened for its rounding; `None` if it
 /// certainly misses the box.
-fn enters(line: &Line<Interval>, Aabb { low, high }: &Aabb) -> Option<f256> {
+fn enters(line: &Line<Interval>, Aabb { low, high }: &Aabb) -> Option<Fraction> {
     let slack = SLACK * low.abs().max(high.abs()).max_element();
-    line.clip(*low - slack, *high + slack).map(|(from, _)| f256::of(from))
+    line.clip(*low - slack, *high + slack).map(|(from, _)| Fraction::of(from))
 }

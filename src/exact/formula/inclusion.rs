@@ -8,7 +8,7 @@ use super::tests::field;
 use crate::affine::Affine;
 use crate::double_double::DoubleDouble;
 use crate::dual::Dual;
-use crate::interval::{Fine, Float, Interval, Wide};
+use crate::interval::{Float, Fraction, Interval, Wide};
 use crate::jet::Jet;
 use crate::scalar::{Scalar, per_axis};
 
@@ -278,8 +278,8 @@ fn bounds_of_each_function_over_each_operator_hold_its_values() {
                         &places,
                         "affine numbers",
                     );
-                    check(&field, &piece, over::<f256::f256>(&piece), &places, "237 bits");
-                    let fine: Fine = over::<f256::f256>(&piece).into();
+                    check(&field, &piece, over::<Fraction>(&piece), &places, "237 bits");
+                    let fine: Wide = over::<Fraction>(&piece);
                     check(&field, &piece, fine, &places, "fractions");
                 }
             }
@@ -302,7 +302,7 @@ fn a_formula_does_not_jump_past_a_value_that_it_takes() {
                 let moved = field(&format!("({text}) - ({:e})", value.high));
                 for at in [
                     piece.at(over::<f64>(&piece)),
-                    piece.at(over::<f256::f256>(&piece)).map(|of: Wide| of.coarse()),
+                    piece.at(over::<Fraction>(&piece)).map(|of: Wide| of.coarse()),
                 ] {
                     let jumps = moved.jumps_past_0(at);
                     let Piece { base, dir, low, high } = &piece;
@@ -366,7 +366,7 @@ fn a_formula_as_it_was_written_is_seen_in_each_function_over_each_operator() {
                 places.sort_by(f64::total_cmp);
                 check_written::<f64>(&field, &piece, &places);
                 if round % 6 == 0 {
-                    check_written::<f256::f256>(&field, &piece, &places);
+                    check_written::<Fraction>(&field, &piece, &places);
                 }
             }
         }

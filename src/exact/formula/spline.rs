@@ -2,7 +2,7 @@
 
 use super::step::Step;
 use super::{Formula, HEIGHT};
-use crate::interval::{Fine, Float, Wide};
+use crate::interval::{Float, Wide};
 use crate::scalar::Scalar;
 use crate::spline::{Coefficient, Spline};
 use std::array;
@@ -29,8 +29,8 @@ impl From<Wide> for Coefficient {
         Self {
             near,
             rest: rest.middle().to_f64(),
-            error: if error.eq_zero() { 0.0 } else { error.to_f64().next_up() },
-            bounds: [bounds.low, bounds.high],
+            error: if error == Float::of(0.0) { 0.0 } else { error.to_f64().next_up() },
+            bounds: bounds.ends(),
         }
     }
 }
@@ -40,9 +40,9 @@ impl Spline {
     /// ends.
     pub fn new(points: &[[f64; 2]]) -> Self {
         let knots = points.iter().map(|[y, _]| *y).collect();
-        let points: Vec<_> = points.iter().map(|point| point.map(Fine::constant)).collect();
+        let points: Vec<_> = points.iter().map(|point| point.map(Wide::constant)).collect();
         let curvature = curvatures(&points);
-        let constant = Fine::constant;
+        let constant = Wide::constant;
         let cubics = points.windows(2).zip(curvature.windows(2)).map(|(ends, curvatures)| {
             let (&[[y, value], [next, after]], &[bend, last]) = (ends, curvatures) else { unreachable!() };
             let width = next - y;
@@ -52,7 +52,7 @@ impl Spline {
             array::from_fn(|order| {
                 array::from_fn(|power| {
                     let of = derivatives.get(order + power).copied().unwrap_or(constant(0.0));
-                    (of / constant(FACTORIALS[power])).wide().into()
+                    (of / constant(FACTORIALS[power])).into()
                 })
             })
         });
@@ -62,8 +62,8 @@ impl Spline {
 }
 
 /// Returns the second derivatives of the spline at its points, by Thomas's algorithm for a diagonally dominant system.
-fn curvatures(points: &[[Fine; 2]]) -> Vec<Fine> {
-    let (count, constant) = (points.len(), Fine::constant);
+fn curvatures(points: &[[Wide; 2]]) -> Vec<Wide> {
+    let (count, constant) = (points.len(), Wide::constant);
     let width = |piece: usize| points[piece + 1][0] - points[piece][0];
     let rise = |piece: usize| (points[piece + 1][1] - points[piece][1]) / width(piece);
     let (mut above, mut right) = (vec![constant(0.0); count], vec![constant(0.0); count]);

@@ -1,11 +1,12 @@
 //! Interval arithmetic: each operation rounds outward, and so the resulting interval encloses the true result.
 //!
-//! The endpoints are `f64`, or have 237 bits if `f64` leaves a decision open ([`Wide`]).
+//! The endpoints are `f64`, or, if `f64` leaves a decision open, fractions of numbers with 237 bits ([`Wide`]).
 
 mod float;
 mod fraction;
 mod functions;
 mod noise;
+pub(crate) mod octuple;
 
 use crate::scalar::{Scalar, apart_if};
 use f256::f256;
@@ -22,11 +23,8 @@ pub struct Interval<F = f64> {
     pub high: F,
 }
 
-/// An interval with endpoints of 237 bits.
-pub type Wide = Interval<f256>;
-
-/// An interval with fractions as endpoints.
-pub type Fine = Interval<Fraction>;
+/// An interval with endpoints of 237 bits, or with fractions as endpoints.
+pub type Wide = Interval<Fraction>;
 
 impl From<Interval> for Wide {
     fn from(of: Interval) -> Self {
@@ -34,16 +32,10 @@ impl From<Interval> for Wide {
     }
 }
 
-impl From<Wide> for Fine {
-    fn from(of: Wide) -> Self {
-        Self { low: of.low.into(), high: of.high.into() }
-    }
-}
-
-impl Fine {
-    /// Converts to 237 bits, rounded outward.
-    pub fn wide(self) -> Wide {
-        Wide { low: self.low.neighbours().0, high: self.high.neighbours().1 }
+impl Wide {
+    /// Converts the endpoints to 237 bits, rounded outward.
+    pub fn ends(self) -> [f256; 2] {
+        [self.low.neighbours().0, self.high.neighbours().1]
     }
 }
 
@@ -67,7 +59,7 @@ impl<F: Float> Interval<F> {
     /// Returns whether the interval may contain 0.
     #[inline(always)]
     pub fn has_zero(self) -> bool {
-        !(self.low > F::of(0.0) || self.high < F::of(0.0))
+        !(self.low.is_positive() || self.high.is_negative())
     }
 
     /// Returns the largest absolute value in the interval.
@@ -264,12 +256,7 @@ impl<F: Float> Div for Interval<F> {
             if other.has_zero() || !other.is_bounded() {
                 return self.unusual_quotient(other);
             }
-            let (low, high) = Self::extremes(
-                self.low / other.low,
-                self.low / other.high,
-                self.high / other.low,
-                self.high / other.high,
-            );
+            let (low, high) = F::quotient_ends([self.low, self.high], [other.low, other.high]);
             Self::outward(low, high)
         })
     }

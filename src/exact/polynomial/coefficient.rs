@@ -1,7 +1,7 @@
 //! Coefficients of polynomials, in three precisions.
 
 use crate::double_double::DoubleDouble;
-use crate::interval::{Float, Interval};
+use crate::interval::{Float, Fraction, Interval, Wide, octuple};
 use f256::f256;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -64,21 +64,21 @@ impl Coefficient for DoubleDouble {
 
     const LARGEST: f64 = 1e290;
 
-    type End = f256;
+    type End = Fraction;
 
     #[inline(always)]
     fn nearest(self) -> f64 {
         self.high
     }
 
-    fn bounds(self, error: f64) -> Interval<f256> {
+    fn bounds(self, error: f64) -> Wide {
         (f256::from(self.high) + f256::from(self.low)).bounds(error)
     }
 
-    fn about(bounds: Interval<f256>) -> (Self, f64) {
+    fn about(bounds: Wide) -> (Self, f64) {
         let (middle, error) = f256::about(bounds);
-        let high = middle.to_f64();
-        let number = Self { high, low: (middle - f256::from(high)).to_f64() };
+        let high = octuple::to_f64(middle);
+        let number = Self { high, low: octuple::to_f64(middle - f256::from(high)) };
         (number, error + Self::ROUNDING * high.abs())
     }
 }
@@ -87,19 +87,19 @@ impl Coefficient for f256 {
     /// 2^-236.
     const ROUNDING: f64 = f64::from_bits((1023 - 236) << 52);
 
-    type End = f256;
+    type End = Fraction;
 
     fn nearest(self) -> f64 {
-        self.to_f64()
+        octuple::to_f64(self)
     }
 
-    fn bounds(self, error: f64) -> Interval<f256> {
+    fn bounds(self, error: f64) -> Wide {
         let error = f256::from(error);
-        Interval { low: (self - error).next_down(), high: (self + error).next_up() }
+        Wide { low: (self - error).next_down().into(), high: (self + error).next_up().into() }
     }
 
-    fn about(bounds: Interval<f256>) -> (Self, f64) {
+    fn about(bounds: Wide) -> (Self, f64) {
         let error = if bounds.is_bounded() { bounds.width().to_f64().next_up() } else { f64::INFINITY };
-        (bounds.middle(), if bounds.low == bounds.high { 0.0 } else { error })
+        (bounds.middle().value(), if bounds.low == bounds.high { 0.0 } else { error })
     }
 }

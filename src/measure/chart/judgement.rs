@@ -5,7 +5,6 @@
 //! counts as the first one if the ray stays on the surface, up to rounding, from the true hit to the found one, and
 //! as a later one only if another root lies between.
 
-use f256::f256;
 use glam::DVec3;
 use std::sync::OnceLock;
 use tabray_core::geometry::ray::{MISS, Ray};
@@ -14,7 +13,7 @@ use tabray_core::world::any_shape::AnyShape;
 use tabray_core::world::certify::{self, Enclosure, HitEnclosure, HitProofs, Precision};
 use tabray_core::world::coincidence::ROUNDING;
 use tabray_exact::double_double::DoubleDouble;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_exact::scalar::Scalar;
 
 /// What is proven about the first hit of a ray and an object.
@@ -166,7 +165,7 @@ impl Pair<'_> {
         let rest = Line { origin: line.at(start), dir: line.dir };
         let in_world = |t: Wide| certify::in_world_units(start + t, self.sight).high;
         let Some(proven) = self.shape.proven() else { return Some(Root::Possible(0.0)) };
-        match HitProofs::<f256>::first_hit(proven, &rest, None).0 {
+        match HitProofs::<Fraction>::first_hit(proven, &rest, None).0 {
             HitEnclosure::Misses => None,
             HitEnclosure::Hits(t) => Some(Root::Certain(in_world(t))),
             HitEnclosure::Edge(t) => Some(Root::Possible(in_world(t))),

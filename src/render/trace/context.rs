@@ -12,8 +12,8 @@ use super::wave::TreeScratch;
 use crate::observer::TraceObserver;
 use crate::plan::Plan;
 use crate::tiles::TOGETHER;
-use f256::f256;
 use glam::DVec3;
+use tabray_exact::interval::Fraction;
 use tabray_world::accuracy::Accuracy;
 use tabray_world::certify::Doubt;
 use tabray_world::geometry::bvh::Stack;
@@ -164,7 +164,7 @@ pub(super) struct UndecidedRay {
     /// The object's index.
     pub object: usize,
     /// The least distance at which the ray may hit it, in lengths of the unrounded ray's direction.
-    pub from: f256,
+    pub from: Fraction,
 }
 
 /// A pixel whose ray may hit an object.

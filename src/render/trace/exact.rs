@@ -4,10 +4,9 @@
 use super::context::{Tracer, UndecidedPixel, UndecidedRay};
 use super::ray_group::{HitRecord, RayGroup};
 use crate::observer::Count;
-use f256::f256;
 use std::cmp::Ordering;
 use std::mem::take;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_world::any_shape::AnyShape;
 use tabray_world::certify::{self, Doubt, Enclosure, Precision};
 use tabray_world::coincidence::{CLOSE, MIN_COSINE, SAME, close};
@@ -42,7 +41,7 @@ pub(super) struct Located {
     pub bracket: Bracket,
     /// If 237 bits do not decide whether the ray hits the shape: the least distance of a possible hit, as a multiple
     /// of the length of the unrounded ray's direction.
-    pub open: Option<f256>,
+    pub open: Option<Fraction>,
 }
 
 impl Located {
@@ -122,7 +121,7 @@ fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> Located {
 }
 
 /// Converts a distance from lengths of a sight's direction to world units.
-pub(super) fn in_world_units(distance: f256, sight: &Sight) -> f64 {
+pub(super) fn in_world_units(distance: Fraction, sight: &Sight) -> f64 {
     certify::in_world_units(Wide::point(distance), sight).high
 }
 

@@ -8,7 +8,6 @@ use super::search::Scratch;
 use super::surface::Surface;
 use crate::plane::Plane;
 use crate::triangle::{Triangle, plane_for_distances};
-use f256::f256;
 use glam::DVec3;
 use std::cell::Cell;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
@@ -238,9 +237,9 @@ impl Surface {
         }
         let entry = |Aabb { low, high }: &Aabb| match &fine {
             Some(fine) => fine.clip(*low, *high).map(|(entry, _)| entry),
-            None => line.clip(*low, *high).map(|(entry, _)| f256::from(entry)),
+            None => line.clip(*low, *high).map(|(entry, _)| Fraction::from(entry)),
         };
-        let end = Cell::new(f256::INFINITY);
+        let end = Cell::new(Fraction::INFINITY);
         // Nothing needs to be searched behind a proven hit of the face that `f64` arithmetic found.
         let found = self.first(Cpu::best(), &sight.ray(), &RayRange::ALL, NOTHING, RayError::NONE, false);
         if let Some(face) = found.face()

@@ -12,11 +12,10 @@ use super::along::{Met, everywhere};
 use super::face::Face;
 use super::surface::{Depth, Surface};
 use super::winding::DIRECTIONS;
-use f256::f256;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::sync::Arc;
-use tabray_exact::interval::Interval;
+use tabray_exact::interval::{Fraction, Interval};
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 use tabray_world::accuracy::Exact;
 use tabray_world::certify::{Equation, HitEnclosure, Precise};
@@ -43,7 +42,7 @@ impl Surface {
         if may_be_on {
             return None;
         }
-        let number = self.number_at::<f64>(at).or_else(|| self.number_at::<f256>(at))?;
+        let number = self.number_at::<f64>(at).or_else(|| self.number_at::<Fraction>(at))?;
         Some(number != 0)
     }
 
@@ -61,7 +60,7 @@ impl Surface {
             (0..self.face_count()).filter(|face| first_of[*face] == *face && !overlaps[*face]).collect();
         let found = parallel::map(firsts.len(), |patch| {
             let face = firsts[patch];
-            self.depth::<f64>(face).or_else(|| self.depth::<f256>(face))
+            self.depth::<f64>(face).or_else(|| self.depth::<Fraction>(face))
         });
         // Undecided winding numbers count as 0.
         if !overlaps.contains(&true) && found.iter().all(|depth| depth.unwrap_or(0) == 0) {

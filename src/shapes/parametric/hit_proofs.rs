@@ -4,7 +4,6 @@ use super::patch::{Patches, PatchesIn, Rectangle};
 use super::search::{Found, Hit, Search, meet};
 use super::shape::ParametricShape;
 use super::tree::halves;
-use f256::f256;
 use glam::DVec3;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
@@ -135,32 +134,7 @@ macro_rules! proofs {
 }
 
 proofs!(f64);
-proofs!(f256);
-
-/// Fractions are rounded to 237 bits.
-impl HitProofs<Fraction> for ParametricShape {
-    fn first_hit(
-        &self,
-        line: &Line<Interval<Fraction>>,
-        leaves: Option<usize>,
-    ) -> (HitEnclosure<Fraction>, usize) {
-        let line = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
-        let (found, leaf) = HitProofs::<f256>::first_hit(self, &line, leaves);
-        let found = match found {
-            HitEnclosure::Misses => HitEnclosure::Misses,
-            HitEnclosure::Hits(at) => HitEnclosure::Hits(at.into()),
-            HitEnclosure::Edge(at) => HitEnclosure::Edge(at.into()),
-            HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(from.into()),
-        };
-        (found, leaf)
-    }
-
-    fn slope(&self, at: [Dual<Interval<Fraction>>; 3], part: usize) -> Dual<Interval<Fraction>> {
-        let wide = at.map(|Dual { value, slope }| Dual { value: value.wide(), slope: slope.wide() });
-        let Dual { value, slope } = HitProofs::<f256>::slope(self, wide, part);
-        Dual { value: value.into(), slope: slope.into() }
-    }
-}
+proofs!(Fraction);
 
 impl OverFootprint for ParametricShape {
     fn hits(&self, line: &Line<Affine>, _leaves: Option<usize>, met: &mut dyn FnMut(FootprintHit, usize)) {

@@ -1,9 +1,8 @@
 //! The interface between a plugin and its parametric surface, and parts of the surface.
 
-use f256::f256;
 use glam::DVec3;
 use tabray_exact::gradient::Gradient;
-use tabray_exact::interval::{Float, Interval};
+use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::Scalar;
 
 /// A surface given by two parameters.
@@ -61,7 +60,7 @@ impl<T: Parametric, F: Float> PatchesIn<F> for T {
 }
 
 /// A surface in both precisions, and at single points.
-pub(super) trait Patches: PatchesIn<f64> + PatchesIn<f256> + Send + Sync {
+pub(super) trait Patches: PatchesIn<f64> + PatchesIn<Fraction> + Send + Sync {
     /// Returns a point, and its derivatives with respect to u and to v.
     fn at(&self, uv: [f64; 2]) -> [DVec3; 3];
 }

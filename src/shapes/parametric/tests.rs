@@ -4,6 +4,7 @@ use super::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tabray_exact::dual::Dual;
+use tabray_exact::interval::Fraction;
 use tabray_exact::scalar::Scalar;
 
 /// A torus that counts how often it is evaluated, in doubles and in 237 bits.
@@ -56,7 +57,7 @@ fn evaluations() -> Vec<(String, [usize; 2])> {
             counts.iter().for_each(|count| count.store(0, Ordering::Relaxed));
             shape.first_hit(&ray, &RayRange::ALL);
             let by_tracer = counts[0].load(Ordering::Relaxed);
-            shape.proven_hit::<f256::f256>(&line, false);
+            shape.proven_hit::<Fraction>(&line, false);
             all.push((format!("{ends:?} from {origin:?}"), [by_tracer, counts[1].load(Ordering::Relaxed)]));
         }
     }

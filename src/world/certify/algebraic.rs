@@ -5,16 +5,15 @@ use super::check::{self, Trail};
 use super::equation::{Equation, HitEnclosure, Values, hit_at, is_kept, may_be_hit};
 use crate::geometry::sight::{Line, Sight};
 use f256::f256;
-use tabray_exact::formula::field::Field;
 use tabray_exact::formula::rational::Rational;
-use tabray_exact::interval::{Fine, Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_exact::polynomial::{Coefficient, MAX_COEFFICIENTS, Polynomial};
 use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::whole::Root;
 use tabray_exact::scalar::per_axis;
 
 /// An equation that may be a polynomial with coefficients of one type.
-pub(super) trait Coefficients<C: Coefficient>: Values<Interval<C::End>> {
+pub trait Coefficients<C: Coefficient>: Values<Interval<C::End>> {
     /// Returns the polynomial along a line; unknown for another equation.
     fn polynomial(&self, at: [Polynomial<C, MAX_COEFFICIENTS>; 3]) -> Polynomial<C, MAX_COEFFICIENTS>;
 }
@@ -22,6 +21,18 @@ pub(super) trait Coefficients<C: Coefficient>: Values<Interval<C::End>> {
 impl<E: Equation, C: Coefficient> Coefficients<C> for E {
     fn polynomial(&self, at: [Polynomial<C, MAX_COEFFICIENTS>; 3]) -> Polynomial<C, MAX_COEFFICIENTS> {
         if self.is_polynomial() { self.along(at) } else { Polynomial::unknown() }
+    }
+}
+
+/// An equation in all numbers in which proofs are tried.
+pub trait AnyNumber: Coefficients<f64> + Coefficients<f256> {
+    /// Returns [`Equation::cost`].
+    fn cost(&self) -> usize;
+}
+
+impl<E: Equation> AnyNumber for E {
+    fn cost(&self) -> usize {
+        Equation::cost(self)
     }
 }
 
@@ -128,21 +139,16 @@ fn visit_hits<C: Coefficient>(
 
 /// Finds the first hit with t > 0 of a ray exactly; `None` where the equation is no polynomial, or if its coefficients
 /// or the numbers of the ray are not fractions of few enough digits.
-pub(super) fn exact_hit(shape: &impl Equation, sight: &Sight) -> Option<HitEnclosure<f256>> {
+pub(super) fn exact_hit(shape: &dyn Values<Wide>, sight: &Sight) -> Option<HitEnclosure<Fraction>> {
     let field = shape.field()?;
-    exactly_along(shape, field, &shape.to_local(sight.line::<Fine>()))
-}
-
-/// The same for a line in the equation's coordinates. The shape is a `dyn` to compile this only once.
-fn exactly_along(shape: &dyn Values<Wide>, field: &Field, line: &Line<Fine>) -> Option<HitEnclosure<f256>> {
-    let [origin, dir] = exact_line(line)?;
+    let near = shape.to_local(sight.line());
+    let [origin, dir] = exact_line(&near)?;
     let polynomial = field.exactly_along(&origin, &dir)?;
     let poles = match field.poles() {
         Some(poles) => Some(poles.exactly_along(&origin, &dir)?),
         None => None,
     };
-    let near = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
-    let [low, high] = Values::<Wide>::extent(shape);
+    let [low, high] = shape.extent();
     let (part, mut trail) = (near.clip(low, high), Trail::default());
     trail.clip(part);
     let Some((from, to)) = part else {
@@ -153,7 +159,7 @@ fn exactly_along(shape: &dyn Values<Wide>, field: &Field, line: &Line<Fine>) -> 
         return None;
     }
     let is_hit = |at: Wide| {
-        let kept = (at.high > f256::ZERO).then(|| is_kept(shape, &near, at));
+        let kept = (at.high > Fraction::of(0.0)).then(|| is_kept(shape, &near, at));
         kept.unwrap_or(Some(false))
     };
     let is_pole = |root: &Root| poles.as_ref().is_some_and(|poles| polynomial.shares(root, poles));
@@ -168,9 +174,9 @@ fn exactly_along(shape: &dyn Values<Wide>, field: &Field, line: &Line<Fine>) -> 
 }
 
 /// Returns the start and the direction of a line, if its numbers are exact.
-pub fn exact_line(line: &Line<Fine>) -> Option<[[Rational; 3]; 2]> {
-    let exact = |of: &Fine| if of.low == of.high { Rational::of(of.low) } else { None };
-    let all = |[x, y, z]: &[Fine; 3]| Some([exact(x)?, exact(y)?, exact(z)?]);
+pub fn exact_line(line: &Line<Wide>) -> Option<[[Rational; 3]; 2]> {
+    let exact = |of: &Wide| if of.low == of.high { Rational::of(of.low) } else { None };
+    let all = |[x, y, z]: &[Wide; 3]| Some([exact(x)?, exact(y)?, exact(z)?]);
     Some([all(&line.origin)?, all(&line.dir)?])
 }
 
@@ -216,13 +222,16 @@ mod tests {
     fn a_line_that_leaves_a_root_finds_the_next_one_without_a_search() {
         let planes = Planes(Cell::new(0));
         for (start, next) in PLACES.into_iter().zip([Some(0.75), Some(0.5), None]) {
-            let error = f256::from(1e-40);
-            let x = Interval { low: f256::from(start) - error, high: f256::from(start) + error };
+            let error = Fraction::from(1e-40);
+            let x = Interval { low: Fraction::from(start) - error, high: Fraction::from(start) + error };
             let [y, z] = [0.1, 0.2].map(Interval::constant);
             let line = Line { origin: [x, y, z], dir: [1.0, 0.0, 0.0].map(Interval::constant) };
             match (first_hit::<f256>(&planes, &line, true), next) {
                 (Some(HitEnclosure::Hits(at)), Some(next)) => {
-                    assert!(at.low <= f256::from(next) && f256::from(next) <= at.high, "{at:?} from {start}");
+                    assert!(
+                        at.low <= Fraction::from(next) && Fraction::from(next) <= at.high,
+                        "{at:?} from {start}"
+                    );
                 }
                 (Some(HitEnclosure::Misses), None) => {}
                 (found, _) => panic!("{found:?} from {start}"),
@@ -233,8 +242,8 @@ mod tests {
 
     #[test]
     fn a_simple_root_where_a_piece_is_halved_is_a_hit() {
-        let error = f256::from(1e-60);
-        let x = Interval { low: f256::from(-2.0) - error, high: f256::from(-2.0) + error };
+        let error = Fraction::from(1e-60);
+        let x = Interval { low: Fraction::from(-2.0) - error, high: Fraction::from(-2.0) + error };
         let [y, z] = [0.1, 0.2].map(Interval::constant);
         let line = Line { origin: [x, y, z], dir: [1.0, 0.0, 0.0].map(Interval::constant) };
         let found = first_hit::<f256>(&Planes(Cell::new(0)), &line, false);

@@ -2,13 +2,12 @@
 
 use super::hit_proofs::{HitProofs, ProofMethods};
 use crate::geometry::sight::Sight;
-use f256::f256;
 use std::fmt;
 use std::iter::successors;
 use std::sync::Arc;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::written::Obstacle;
-use tabray_exact::interval::Wide;
+use tabray_exact::interval::{Float, Fraction, Wide};
 
 /// Why a proof with 237 bits leaves a ray's first hit of a shape open.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,15 +65,15 @@ const MAX_LETTERS: usize = 48;
 
 impl Doubt {
     /// Returns why the first hit of a shape is open from a distance on, in lengths of the sight's direction.
-    pub fn of(shape: &dyn ProofMethods, sight: &Sight, from: f256) -> Self {
-        if !HitProofs::<f256>::has_equation(shape, 0) {
+    pub fn of(shape: &dyn ProofMethods, sight: &Sight, from: Fraction) -> Self {
+        if !HitProofs::<Fraction>::has_equation(shape, 0) {
             return Self::Singular;
         }
         let line = sight.line::<Wide>();
         let within = |width: f64| {
-            let place = Wide { low: from, high: from * (f256::ONE + f256::from(width)) };
+            let place = Wide { low: from, high: from * (Fraction::of(1.0) + Fraction::from(width)) };
             let at = line.along(Dual::variable(place));
-            let Dual { value, slope }: Dual<Wide> = HitProofs::<f256>::slope(shape, at, 0);
+            let Dual { value, slope }: Dual<Wide> = HitProofs::<Fraction>::slope(shape, at, 0);
             (value.has_zero(), slope)
         };
         if let (true, slope) = within(TOUCH)
@@ -84,16 +83,16 @@ impl Doubt {
             return Self::Touched;
         }
         let obstacle = |width: f64| {
-            let place = Wide { low: from, high: from * (f256::ONE + f256::from(width)) };
-            HitProofs::<f256>::obstacle(shape, line.at(place), 0)
+            let place = Wide { low: from, high: from * (Fraction::of(1.0) + Fraction::from(width)) };
+            HitProofs::<Fraction>::obstacle(shape, line.at(place), 0)
         };
         match within(JUMP) {
             (true, slope) if !slope.is_bounded() => {
-                let value = |at: f256| {
+                let value = |at: Fraction| {
                     let at = line.along(Dual::variable(Wide::point(at)));
-                    HitProofs::<f256>::slope(shape, at, 0).value.middle()
+                    HitProofs::<Fraction>::slope(shape, at, 0).value.middle()
                 };
-                let jumps = || jumps(value, from, from * (f256::ONE + f256::from(JUMP)));
+                let jumps = || jumps(value, from, from * (Fraction::of(1.0) + Fraction::from(JUMP)));
                 match obstacle(JUMP) {
                     Some(Obstacle::Undefined(operation)) => Self::Undefined(shortened(&operation)),
                     Some(Obstacle::Jump(operation)) if jumps() => Self::Jumps(Some(shortened(&operation))),
@@ -114,12 +113,12 @@ impl Doubt {
 }
 
 /// Tells whether a value changes between two places however near they are.
-fn jumps(value: impl Fn(f256) -> f256, mut low: f256, mut high: f256) -> bool {
-    let change = |one: f256, other: f256| (other - one).abs();
+fn jumps(value: impl Fn(Fraction) -> Fraction, mut low: Fraction, mut high: Fraction) -> bool {
+    let change = |one: Fraction, other: Fraction| (other - one).abs();
     let (mut below, mut above) = (value(low), value(high));
     let mut largest = change(below, above);
     for _ in 0..HALVINGS {
-        let middle = f256::from(0.5) * (low + high);
+        let middle = Fraction::from(0.5) * (low + high);
         let at = value(middle);
         let (one, other) = (change(below, at), change(at, above));
         if one > other {
@@ -130,7 +129,7 @@ fn jumps(value: impl Fn(f256) -> f256, mut low: f256, mut high: f256) -> bool {
         let most = one.max(other);
         largest = largest.max(most);
         // False for NaN.
-        let is_large = most > f256::from(0.5) * largest;
+        let is_large = most > Fraction::from(0.5) * largest;
         if !is_large {
             return false;
         }
@@ -187,7 +186,7 @@ mod tests {
                 panic!("237 bits do not decide it")
             };
             assert_eq!(Doubt::of(&case, &sight, from), doubt);
-            let before = from * f256::from(0.99);
+            let before = from * Fraction::from(0.99);
             assert_eq!(Doubt::of(&case, &sight, before), Doubt::Long(None));
         }
     }

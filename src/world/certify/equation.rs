@@ -84,7 +84,7 @@ pub trait Equation {
 
 /// An equation in one type of enclosing numbers. Proofs take it as a `dyn`, so that they are compiled once for each
 /// number type, not once for each shape.
-pub(super) trait Values<N: Scalar> {
+pub trait Values<N: Scalar> {
     /// Returns [`Equation::IS_QUADRATIC`].
     fn is_quadratic(&self) -> bool;
 

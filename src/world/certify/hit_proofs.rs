@@ -4,9 +4,9 @@
 //! true point on the surface, somewhere in an enclosure. The point is known to lie on the surface, although no interval
 //! shows that.
 
-use super::algebraic;
+use super::algebraic::{self, AnyNumber};
 use super::along::{COARSE, FINE, first_along};
-use super::equation::{Equation, HitEnclosure};
+use super::equation::{Equation, HitEnclosure, Values};
 use super::footprint::OverFootprint;
 use super::search;
 use crate::geometry::sight::Line;
@@ -16,7 +16,7 @@ use f256::f256;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::written::Obstacle;
-use tabray_exact::interval::{Fine, Float, Fraction, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_exact::scalar::{Scalar, per_axis};
 
 /// Proofs about a shape's hits along any line, in one precision.
@@ -83,9 +83,9 @@ pub trait HitProofs<F: Float> {
 }
 
 /// Proofs about a shape's hits along any line, in every precision.
-pub trait ProofMethods: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint {}
+pub trait ProofMethods: HitProofs<f64> + HitProofs<Fraction> + OverFootprint {}
 
-impl<T: HitProofs<f64> + HitProofs<f256> + HitProofs<Fraction> + OverFootprint> ProofMethods for T {}
+impl<T: HitProofs<f64> + HitProofs<Fraction> + OverFootprint> ProofMethods for T {}
 
 impl<E: Equation, F: Precise> HitProofs<F> for E {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (HitEnclosure<F>, usize) {
@@ -153,16 +153,14 @@ pub trait Precise: Float {
     fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self>;
 
     /// Returns what is proven about a line's first hit. With `leaves`, the line's true start lies on the shape.
-    fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> HitEnclosure<Self>;
+    fn along(shape: &dyn AnyNumber, line: &Line<Interval<Self>>, leaves: bool) -> HitEnclosure<Self>;
 
     /// Returns what is proven about each of a line's hits, as [`HitProofs::all_hits`] does.
     fn all_along(
-        _shape: &impl Equation,
-        _line: &Line<Interval<Self>>,
-        _leaves: bool,
-    ) -> Option<Vec<HitEnclosure<Self>>> {
-        None
-    }
+        shape: &dyn AnyNumber,
+        line: &Line<Interval<Self>>,
+        leaves: bool,
+    ) -> Option<Vec<HitEnclosure<Self>>>;
 
     /// Returns a shader of any type, to be asked in intervals of this precision.
     fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Interval<Self>>;
@@ -171,10 +169,10 @@ pub trait Precise: Float {
     fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>>;
 
     /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
-    fn narrow(of: Fine) -> Interval<Self>;
+    fn narrow(of: Wide) -> Interval<Self>;
 
     /// Converts an interval, exactly.
-    fn widen(of: Interval<Self>) -> Fine;
+    fn widen(of: Interval<Self>) -> Wide;
 }
 
 impl Precise for f64 {
@@ -182,13 +180,13 @@ impl Precise for f64 {
         shape
     }
 
-    fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
+    fn along(shape: &dyn AnyNumber, line: &Line<Interval>, leaves: bool) -> HitEnclosure<Self> {
         let hit = algebraic::first_hit::<f64>(shape, line, leaves);
         hit.unwrap_or_else(|| first_along(shape, line, leaves, COARSE.pieces(shape)))
     }
 
     fn all_along(
-        shape: &impl Equation,
+        shape: &dyn AnyNumber,
         line: &Line<Interval>,
         leaves: bool,
     ) -> Option<Vec<HitEnclosure<Self>>> {
@@ -203,37 +201,32 @@ impl Precise for f64 {
         of
     }
 
-    fn narrow(of: Fine) -> Interval {
-        let of = of.wide();
-        let (low, high) = (of.low.to_f64(), of.high.to_f64());
-        Interval {
-            low: if f256::from(low) == of.low { low } else { low.next_down() },
-            high: if f256::from(high) == of.high { high } else { high.next_up() },
-        }
+    fn narrow(of: Wide) -> Interval {
+        of.coarse()
     }
 
-    fn widen(of: Interval) -> Fine {
-        Wide::from(of).into()
+    fn widen(of: Interval) -> Wide {
+        of.into()
     }
 }
 
-impl Precise for f256 {
+impl Precise for Fraction {
     fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
         shape
     }
 
-    fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> HitEnclosure<Self> {
+    fn along(shape: &dyn AnyNumber, line: &Line<Wide>, leaves: bool) -> HitEnclosure<Self> {
         if let Some(hit) = algebraic::first_hit::<f256>(shape, line, leaves) {
             return hit;
         }
-        if is_closed(shape) {
+        if Values::<Wide>::is_quadratic(shape) {
             return first_along(shape, line, leaves, 0);
         }
         let pieces = [COARSE.pieces(shape), FINE.pieces(shape)];
-        search::first_hit_in_turns((shape, shape), &shape.to_local(*line), leaves, pieces)
+        search::first_hit_in_turns((shape, shape), &Values::<Wide>::to_local(shape, *line), leaves, pieces)
     }
 
-    fn all_along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
+    fn all_along(shape: &dyn AnyNumber, line: &Line<Wide>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
         algebraic::all_hits::<f256>(shape, line, leaves)
     }
 
@@ -245,64 +238,11 @@ impl Precise for f256 {
         of
     }
 
-    fn narrow(of: Fine) -> Wide {
-        of.wide()
-    }
-
-    fn widen(of: Wide) -> Fine {
-        of.into()
-    }
-}
-
-/// Fractions decide ties of surfaces whose hits have closed forms; other surfaces are searched in 237 bits.
-impl Precise for Fraction {
-    fn proofs(shape: &dyn ProofMethods) -> &dyn HitProofs<Self> {
-        shape
-    }
-
-    fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> HitEnclosure<Self> {
-        if is_closed(shape) {
-            return first_along(shape, line, leaves, 0);
-        }
-        finely(f256::along(shape, &wide(line), leaves))
-    }
-
-    fn all_along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> Option<Vec<HitEnclosure<Self>>> {
-        let all = (!is_closed(shape)).then(|| f256::all_along(shape, &wide(line), leaves))?;
-        Some(all?.into_iter().map(finely).collect())
-    }
-
-    fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Interval<Self>> {
+    fn narrow(of: Wide) -> Wide {
         of
     }
 
-    fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>> {
+    fn widen(of: Wide) -> Wide {
         of
     }
-
-    fn narrow(of: Fine) -> Fine {
-        of
-    }
-
-    fn widen(of: Fine) -> Fine {
-        of
-    }
-}
-
-fn wide(line: &Line<Fine>) -> Line<Wide> {
-    Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) }
-}
-
-fn finely(hit: HitEnclosure<f256>) -> HitEnclosure<Fraction> {
-    match hit {
-        HitEnclosure::Misses => HitEnclosure::Misses,
-        HitEnclosure::Hits(at) => HitEnclosure::Hits(at.into()),
-        HitEnclosure::Edge(at) => HitEnclosure::Edge(at.into()),
-        HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(from.into()),
-    }
-}
-
-/// Tells whether the hits of a shape have closed forms.
-fn is_closed<E: Equation>(_shape: &E) -> bool {
-    E::IS_QUADRATIC
 }

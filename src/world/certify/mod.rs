@@ -16,6 +16,7 @@ mod hit_proofs;
 mod premise;
 mod search;
 
+use algebraic::AnyNumber;
 pub use algebraic::exact_line;
 pub use doubt::Doubt;
 pub use equation::{Equation, HitEnclosure};
@@ -25,7 +26,6 @@ pub use premise::{Assumption, Premise};
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::{Line, Sight};
-use f256::f256;
 use glam::DVec3;
 use tabray_exact::affine::Affine;
 use tabray_exact::double_double::DoubleDouble;
@@ -43,7 +43,7 @@ pub enum Enclosure {
     /// surface.
     Edge(Wide),
     /// There may be a hit, no nearer than this distance.
-    Doubtful(f256),
+    Doubtful(Fraction),
 }
 
 impl From<HitEnclosure<f64>> for Enclosure {
@@ -57,24 +57,13 @@ impl From<HitEnclosure<f64>> for Enclosure {
     }
 }
 
-impl From<HitEnclosure<f256>> for Enclosure {
-    fn from(of: HitEnclosure<f256>) -> Self {
+impl From<HitEnclosure<Fraction>> for Enclosure {
+    fn from(of: HitEnclosure<Fraction>) -> Self {
         match of {
             HitEnclosure::Misses => Self::Misses,
             HitEnclosure::Hits(at) => Self::Hits(at),
             HitEnclosure::Edge(at) => Self::Edge(at),
             HitEnclosure::Doubtful(from) => Self::Doubtful(from),
-        }
-    }
-}
-
-impl From<HitEnclosure<Fraction>> for Enclosure {
-    fn from(of: HitEnclosure<Fraction>) -> Self {
-        match of {
-            HitEnclosure::Misses => Self::Misses,
-            HitEnclosure::Hits(at) => Self::Hits(at.wide()),
-            HitEnclosure::Edge(at) => Self::Edge(at.wide()),
-            HitEnclosure::Doubtful(from) => Self::Doubtful(Interval::point(from).wide().low),
         }
     }
 }
@@ -100,21 +89,21 @@ pub fn middle(of: Wide) -> DoubleDouble {
 }
 
 /// Rounds a number to a double-double number.
-fn rounded(of: f256) -> DoubleDouble {
+fn rounded(of: Fraction) -> DoubleDouble {
     let high = of.to_f64();
-    DoubleDouble { high, low: (of - f256::from(high)).to_f64() }
+    DoubleDouble { high, low: (of - Fraction::from(high)).to_f64() }
 }
 
 /// Computes the square root to some 195 bits. One step of Newton's method from a double-double root is faster than the
 /// root to all 237 bits.
-fn root(of: f256) -> f256 {
+fn root(of: Fraction) -> Fraction {
     let DoubleDouble { high, low } = rounded(of).sqrt();
     // Outside of this range, the low parts of intermediate results may underflow.
     if !(1e-120..1e120).contains(&high) {
         return of.sqrt();
     }
-    let start = f256::from(high) + f256::from(low);
-    f256::from(0.5) * (start + of / start)
+    let start = Fraction::from(high) + Fraction::from(low);
+    Fraction::from(0.5) * (start + of / start)
 }
 
 /// The precision in which a proof is tried.
@@ -128,11 +117,16 @@ pub enum Precision {
 
 /// Returns what is proven about a ray's first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
+    first_hit_of(shape, sight, precision)
+}
+
+/// The same for a `dyn`, to compile it only once.
+fn first_hit_of(shape: &dyn AnyNumber, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
         Precision::Double => f64::along(shape, &sight.line(), false).into(),
         Precision::Octuple => {
             let exact = algebraic::exact_hit(shape, sight);
-            exact.unwrap_or_else(|| f256::along(shape, &sight.line(), false)).into()
+            exact.unwrap_or_else(|| Fraction::along(shape, &sight.line(), false)).into()
         }
     }
 }
@@ -178,7 +172,7 @@ fn part_of(
     }
     match precision {
         Precision::Double => found::<f64>(shape, sight, start),
-        Precision::Octuple => found::<f256>(shape, sight, start),
+        Precision::Octuple => found::<Fraction>(shape, sight, start),
     }
 }
 
@@ -227,9 +221,9 @@ mod tests {
         #[test]
         fn roots_have_far_more_digits_than_twice_the_precision(high in 1.0..4.0, low in 0.0..1e-20, power in -1000..1000) {
             let scale = 2_f64.powi(power);
-            let of = f256::from(scale) * (f256::from(high) + f256::from(low));
+            let of = Fraction::from(scale) * (Fraction::from(high) + Fraction::from(low));
             let (found, truth) = (root(of), Float::sqrt(of));
-            prop_assert!(Float::abs(found - truth) <= f256::from(2_f64.powi(-195)) * truth, "{:?}", of);
+            prop_assert!(Float::abs(found - truth) <= Fraction::from(2_f64.powi(-195)) * truth, "{:?}", of);
         }
     }
 }

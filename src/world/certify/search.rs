@@ -7,11 +7,10 @@ mod tests;
 use super::check::{self, Trail};
 use super::equation::{HitEnclosure, Values, hit_at, may_be_hit};
 use crate::geometry::sight::Line;
-use f256::f256;
 use judgement::{Judgement, Search};
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::field::Field;
-use tabray_exact::interval::{Float, Interval, Wide};
+use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: about that of the
 /// shortest piece with `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits
@@ -63,7 +62,7 @@ pub fn first_hit_in_turns(
     line: &Line<Wide>,
     leaves: bool,
     [mut pieces, mut fine_pieces]: [usize; 2],
-) -> HitEnclosure<f256> {
+) -> HitEnclosure<Fraction> {
     let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
     let (mut trail, mut from, mut width, mut is_spent) = (Trail::default(), 0.0, DOUBTFUL, false);
     let found = loop {

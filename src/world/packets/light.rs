@@ -12,7 +12,7 @@ use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
 use glam::DVec3;
 use tabray_exact::affine::Affine;
-use tabray_exact::interval::{Fine, Interval, Wide};
+use tabray_exact::interval::{Interval, Wide};
 
 /// Points of a surface that may see a light.
 pub struct ShadingPoints<'p> {
@@ -53,9 +53,7 @@ pub struct AnyLit {
 }
 
 /// A light for packets. Every [`Light`] is one.
-pub trait PacketLight:
-    Light + Sends<f64> + Sends<Interval> + Sends<Affine> + Sends<Wide> + Sends<Fine>
-{
+pub trait PacketLight: Light + Sends<f64> + Sends<Interval> + Sends<Affine> + Sends<Wide> {
     /// Samples the light from many points, with what is [`sent`](Light::sent) to each.
     fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> AnyLit;
 }

@@ -88,8 +88,8 @@ impl Dyadic {
             scaled(sum, self.exponent + less)
         };
         let (low, high) = (number(below), number(above));
-        let is_finite = Wide::point(low).is_bounded() && Wide::point(high).is_bounded();
-        if is_finite { Wide { low, high } } else { Wide::whole() }
+        let is_finite = low.is_finite() && high.is_finite();
+        if is_finite { Wide { low: low.into(), high: high.into() } } else { Wide::whole() }
     }
 }
 

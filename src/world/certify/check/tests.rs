@@ -4,9 +4,9 @@ use super::*;
 use crate::certify::equation::Equation;
 use crate::certify::{Enclosure, Precision, first_hit};
 use crate::geometry::sight::Sight;
-use f256::f256;
 use std::sync::Arc;
 use tabray_exact::formula::Formula;
+use tabray_exact::interval::Fraction;
 
 /// A surface whose proofs are about one formula, although the scene has another.
 struct Surface {
@@ -74,10 +74,10 @@ fn passes(text: &str, [x, y]: [f64; 2], claimed: HitEnclosure<f64>) -> [bool; 2]
         HitEnclosure::Misses => HitEnclosure::Misses,
         HitEnclosure::Hits(at) => HitEnclosure::Hits(Interval::from_f64(at)),
         HitEnclosure::Edge(at) => HitEnclosure::Edge(Interval::from_f64(at)),
-        HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(f256::from(from)),
+        HitEnclosure::Doubtful(from) => HitEnclosure::Doubtful(Fraction::from(from)),
     };
     let start = [x, y, -3.0];
-    [pass::<f64>(text, start, claimed), pass::<f256>(text, start, finely)]
+    [pass::<f64>(text, start, claimed), pass::<Fraction>(text, start, finely)]
 }
 
 #[test]

@@ -41,7 +41,7 @@ impl Counted {
 
 impl Equation for Counted {
     fn value<N: Scalar>(&self, [x, y, _]: [N; 3]) -> N {
-        let count = &self.1[usize::from(size_of::<N>() >= size_of::<Interval<f256>>())];
+        let count = &self.1[usize::from(size_of::<N>() >= size_of::<Interval<Fraction>>())];
         count.set(count.get() + 1);
         let n = N::constant;
         let third = || x - n(1.0) / n(3.0);
@@ -65,7 +65,7 @@ impl Equation for Counted {
 #[test]
 fn a_shape_smaller_than_rounding_is_in_doubt_after_a_few_pieces() {
     let step = Counted::new(Formula::Step);
-    let third = |x| Interval::<f256>::constant(x) / Interval::constant(3.0);
+    let third = |x| Interval::<Fraction>::constant(x) / Interval::constant(3.0);
     let line =
         Line { origin: [third(1e90), third(0.5), third(0.5)], dir: [third(-1.0), third(0.0), third(0.0)] };
     let found = first_hit(&step, &line, false, 2000);
@@ -77,7 +77,7 @@ fn a_shape_smaller_than_rounding_is_in_doubt_after_a_few_pieces() {
 #[test]
 fn a_jump_is_left_in_doubt_after_a_few_pieces() {
     let step = Counted::new(Formula::Step);
-    let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+    let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<Fraction>::constant));
     let HitEnclosure::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000) else {
         panic!("a jump is no root")
     };
@@ -89,12 +89,12 @@ fn a_jump_is_left_in_doubt_after_a_few_pieces() {
 #[test]
 fn a_touch_is_left_in_doubt_after_a_few_pieces() {
     let squared = Counted::new(Formula::Squared);
-    let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+    let [origin, dir] = [[-2.0, 0.5, 0.5], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<Fraction>::constant));
     let HitEnclosure::Doubtful(from) = first_hit(&squared, &Line { origin, dir }, false, 2000) else {
         panic!("no digits tell a touch from a miss")
     };
-    let third = f256::from(7.0) / f256::from(3.0);
-    assert!(from <= third && third - from < f256::from(1e-30), "{from:?}");
+    let third = Fraction::from(7.0) / Fraction::from(3.0);
+    assert!(from <= third && third - from < Fraction::from(1e-30), "{from:?}");
     let count = squared.total();
     assert!(count < 100, "{count} evaluations");
 }
@@ -140,7 +140,7 @@ fn what_few_digits_leave_open_is_decided_by_more_and_from_there_few_go_on() {
 #[test]
 fn where_a_formula_is_0_all_along_a_piece_it_is_not_cut() {
     let half = Counted::new(Formula::Half);
-    let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+    let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.1, 0.0]].map(|of| of.map(Interval::<Fraction>::constant));
     let found = first_hit(&half, &Line { origin, dir }, false, 2000);
     assert!(
         // The box is a little larger than the extent.
