@@ -55,7 +55,8 @@ pub(super) fn body(formula: impl Implicit + 'static, frame: Frame) -> Body {
     let nodes = formula.field().zip(degree).and_then(|(field, degree)| Nodes::new(field, degree, ends));
     let cost = formula.field().map_or(1, |field| field.formula().cost());
     let (parts, most_pieces) = (Parts::new(low, high, cost), on_ray::most_pieces(cost));
-    let shape = ImplicitShape { formula, degree, frame, low, high, parts, most_pieces, nodes };
+    let recorded = Default::default();
+    let shape = ImplicitShape { formula, recorded, degree, frame, low, high, parts, most_pieces, nodes };
     Body::plain(Shape::new(shape).bracketed().searched())
 }
 
@@ -176,7 +177,10 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
     }
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
-        self.formula.value(at)
+        match self.formula.field() {
+            Some(field) => field.at(at),
+            None => self.value().at(at),
+        }
     }
 
     fn is_polynomial(&self) -> bool {
@@ -184,7 +188,10 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
     }
 
     fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
-        self.formula.along(at)
+        match self.formula.field() {
+            Some(field) => field.along(at),
+            None => self.polynomial().along(at),
+        }
     }
 
     fn field(&self) -> Option<&Field> {

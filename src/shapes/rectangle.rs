@@ -45,6 +45,18 @@ impl Rectangle {
         DVec2::new(self.sides[0].dot(from_corner), self.sides[1].dot(from_corner))
     }
 
+    /// See [`FinitePlane::inside_of`]. It is compiled once for all accuracies.
+    fn inside_of<N: Scalar>(&self, normal: [N; 3], xdir: DVec3, from_corner: [N; 3]) -> N {
+        let xdir = constants(xdir);
+        // The first side is along the projection of `xdir`, which differs from `xdir` by a multiple of the normal. The
+        // normal is perpendicular to all vectors in the plane.
+        let ydir = scalar::cross(normal, xdir);
+        let (x, y, square) = (dot(xdir, from_corner), dot(ydir, from_corner), dot(ydir, ydir));
+        let inside = |along: N, part: N, length: f64| along.min(N::constant(length).powi(2) * square - part);
+        let [width, height] = self.dimensions.to_array();
+        inside(x, dot(normal, normal) * x.powi(2), width).min(inside(y, y.powi(2), height))
+    }
+
     /// Returns the bounding box.
     pub fn around(&self) -> Aabb {
         let corner = |x: f64, y: f64| self.corner + x * self.sides[0] + y * self.sides[1];
@@ -86,15 +98,8 @@ impl<A> FinitePlane<A> {
     /// differs from side to side. Squares replace lengths and unit vectors, because square roots are expensive with
     /// many bits.
     pub fn inside_of<N: Scalar>(&self, at: [N; 3]) -> N {
-        let (normal, xdir) = (self.plane.given_normal(), constants(self.given_xdir));
         let from_corner = per_axis(|axis| at[axis] - N::constant(self.plane.point[axis]));
-        // The first side is along the projection of `xdir`, which differs from `xdir` by a multiple of the normal. The
-        // normal is perpendicular to all vectors in the plane.
-        let ydir = scalar::cross(normal, xdir);
-        let (x, y, square) = (dot(xdir, from_corner), dot(ydir, from_corner), dot(ydir, ydir));
-        let inside = |along: N, part: N, length: f64| along.min(N::constant(length).powi(2) * square - part);
-        let [width, height] = self.rectangle.dimensions.to_array();
-        inside(x, dot(normal, normal) * x.powi(2), width).min(inside(y, y.powi(2), height))
+        self.rectangle.inside_of(self.plane.given_normal(), self.given_xdir, from_corner)
     }
 
     /// Returns a bound of the rounding error, along a side, of the point where a ray crosses the plane, in world units.

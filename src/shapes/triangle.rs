@@ -50,29 +50,39 @@ impl<A: NotClassic> Triangle<A> {
     }
 }
 
+fn given<N: Scalar>(corners: &[DVec3; 3]) -> [[N; 3]; 3] {
+    per_axis(|corner| constants(corners[corner]))
+}
+
+/// See [`Triangle::area_normal`]. It is compiled once for all accuracies, as the next one is.
+fn area_normal<N: Scalar>(corners: &[DVec3; 3]) -> [N; 3] {
+    let [a, b, c] = given(corners);
+    let from_a = |corner: [N; 3]| per_axis(|axis| corner[axis] - a[axis]);
+    cross(from_a(b), from_a(c))
+}
+
+/// See [`Triangle::inside`].
+fn inside<N: Scalar>(corners: &[DVec3; 3], at: [N; 3]) -> N {
+    let normal = area_normal(corners);
+    let [a, b, c] = given(corners);
+    let inside = |from: [N; 3], to: [N; 3]| {
+        // This vector is perpendicular to the edge, in the plane, toward the inside.
+        let inward = cross(normal, per_axis(|axis| to[axis] - from[axis]));
+        dot(inward, per_axis(|axis| at[axis] - from[axis]))
+    };
+    inside(a, b).min(inside(b, c)).min(inside(c, a))
+}
+
 impl<A> Triangle<A> {
     /// Returns a normal whose length is twice the triangle's area.
     pub(crate) fn area_normal<N: Scalar>(&self) -> [N; 3] {
-        let [a, b, c] = self.given_corners();
-        let from_a = |corner: [N; 3]| per_axis(|axis| corner[axis] - a[axis]);
-        cross(from_a(b), from_a(c))
-    }
-
-    fn given_corners<N: Scalar>(&self) -> [[N; 3]; 3] {
-        per_axis(|corner| constants(self.corners[corner]))
+        area_normal(&self.corners)
     }
 
     /// Returns a number that is positive for a point of the plane inside the three edges, and negative outside. Its
     /// unit differs from edge to edge.
     pub fn inside<N: Scalar>(&self, at: [N; 3]) -> N {
-        let normal = self.area_normal();
-        let [a, b, c] = self.given_corners();
-        let inside = |from: [N; 3], to: [N; 3]| {
-            // This vector is perpendicular to the edge, in the plane, toward the inside.
-            let inward = cross(normal, per_axis(|axis| to[axis] - from[axis]));
-            dot(inward, per_axis(|axis| at[axis] - from[axis]))
-        };
-        inside(a, b).min(inside(b, c)).min(inside(c, a))
+        inside(&self.corners, at)
     }
 
     /// Returns whether a point of the plane is to the left of each edge, or on it.

@@ -16,6 +16,7 @@ mod parser;
 mod program;
 mod quotient;
 pub mod rational;
+pub mod recorded;
 mod spline;
 mod step;
 #[cfg(test)]

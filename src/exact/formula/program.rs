@@ -55,7 +55,7 @@ pub(super) struct Values {
 
 impl Value {
     /// Returns a key that is equal for equal values.
-    fn key(&self) -> (StepKey, [usize; 3]) {
+    pub fn key(&self) -> (StepKey, [usize; 3]) {
         (self.step.key(), self.operands)
     }
 

@@ -5,11 +5,13 @@ use super::formula::Implicit;
 use super::parts::Parts;
 use glam::DVec3;
 use std::ops::Range;
+use std::sync::OnceLock;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::formula::cells::MARGIN;
 use tabray_exact::formula::field::Field;
 use tabray_exact::formula::nodes::{NearLine, Nodes};
+use tabray_exact::formula::recorded::Recorded;
 use tabray_exact::interval::Interval;
 use tabray_exact::polynomial::Polynomial;
 use tabray_exact::roots::bernstein::{Bernstein, NearRoot};
@@ -38,6 +40,9 @@ const MAX_DRIFTING: usize = 256;
 /// A shape with hits and normals from its formula.
 pub(super) struct ImplicitShape<T> {
     pub formula: T,
+    /// The formula and its [`polynomial`](Implicit::polynomial) for proofs, once one has asked for them: proofs interpret
+    /// them, to be compiled once and not for each formula.
+    pub recorded: [OnceLock<Recorded>; 2],
     /// The degree of the formula's [`polynomial`](Implicit::polynomial), if there is one.
     pub degree: Option<usize>,
     pub frame: Frame,
@@ -51,6 +56,16 @@ pub(super) struct ImplicitShape<T> {
 }
 
 impl<T: Implicit> ImplicitShape<T> {
+    /// Returns the formula's value as it was recorded.
+    pub fn value(&self) -> &Recorded {
+        self.recorded[0].get_or_init(|| Recorded::of(|at| self.formula.value(at)))
+    }
+
+    /// Returns the formula's polynomial as it was recorded.
+    pub fn polynomial(&self) -> &Recorded {
+        self.recorded[1].get_or_init(|| Recorded::of(|at| self.formula.polynomial(at)))
+    }
+
     /// Tells whether a root may be no hit, because the surface is cut off there or its formula is not defined.
     pub fn has_gaps(&self) -> bool {
         self.formula.is_cut() || self.formula.field().is_some_and(Field::divides)
