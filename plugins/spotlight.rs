@@ -28,7 +28,7 @@ inventory::submit! {
             });
         }
         let edge = args.get(&THETA) * std::f64::consts::PI / 180.0;
-        let enclosed = (Wide::constant(args.get(&THETA)) * Wide::pi() / Wide::constant(180.0)).cos().into();
+        let enclosed = (Wide::constant(args.get(&THETA)) * Wide::pi() / Wide::constant(180.0)).cos();
         Ok(Box::new(Spotlight { light, axis, cos_edge: Known { rounded: libm::cos(edge), enclosed } }))
     })
     .dumped_as("light")

@@ -487,7 +487,7 @@ mod tests {
             let [numerator, denominator] = [number.numerator, number.denominator].map(Dyadic::from);
             let Self([above, below]) = self;
             let apart = above.times(&denominator).plus(&below.times(&numerator).negated());
-            !(apart.times(below).digits < IBig::ZERO)
+            apart.times(below).digits >= IBig::ZERO
         }
 
         fn negated(&self) -> Self {

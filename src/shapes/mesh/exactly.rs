@@ -75,7 +75,7 @@ impl Surface {
     ) -> Option<(HitEnclosure<F>, usize)> {
         let crossings = self.exact_crossings::<F>(line, true)?;
         let Some((at, here)) = crossings.places().next() else { return Some((HitEnclosure::Misses, 0)) };
-        let hit = HitEnclosure::Hits(F::narrow(at.into()));
+        let hit = HitEnclosure::Hits(F::narrow(at));
         if let [(_, face)] = here {
             return Some((hit, *face));
         }
@@ -89,11 +89,11 @@ impl Surface {
         for (_, _, face) in &places {
             let is_hidden = self.is_certainly_hidden::<A, f64>(*face, &coarse, at.coarse(), None);
             match is_hidden
-                .or_else(|| self.is_certainly_hidden::<A, F>(*face, line, F::narrow(at.into()), None))
+                .or_else(|| self.is_certainly_hidden::<A, F>(*face, line, F::narrow(at), None))
             {
                 Some(true) => {}
                 Some(false) => return Some((hit, *face)),
-                None => return Some((HitEnclosure::Doubtful(F::narrow(at.into()).low), *face)),
+                None => return Some((HitEnclosure::Doubtful(F::narrow(at).low), *face)),
             }
         }
         let first = places.into_iter().min_by_key(|(_, order, _)| *order);
@@ -137,7 +137,7 @@ impl Surface {
     ) -> Interval<F> {
         match Face(self.triangle::<A>(face)).first_hit(line, None).0 {
             HitEnclosure::Hits(at) | HitEnclosure::Edge(at) if at.low == at.high => at,
-            _ => F::narrow(near.into()),
+            _ => F::narrow(near),
         }
     }
 }
