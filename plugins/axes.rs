@@ -81,11 +81,20 @@ inventory::submit! {
             add("rod".to_owned(), Piece::Rod(radius, neck + radius - low), low * along, along);
             add("head".to_owned(), Piece::Cone(HEAD[0] * radius, HEAD[1] * radius), neck * along, along);
             let mut texts = vec![(name.to_owned(), to[axis] * along, view.ahead(along))];
+            // Seen from its end, an axis would have all its numbers at one place.
+            let image = |at: DVec3| args.setting.camera.project(args.get(&CENTER) + at);
+            let digit = view.vector(6.0 * unit * DVec2::Y);
+            let is_point = match [low * along, neck * along, neck * along + digit].map(image) {
+                [Projected::At(one), Projected::At(other), Projected::At(up)] => one.distance(other) < up.distance(other),
+                _ => false,
+            };
             for place in (1..).map(|count| f64::from(count) * ticks).take_while(|place| ticks > 0.0 && *place < neck.max(-low)) {
                 for place in [place, -place].into_iter().filter(|place| *place < neck && *place >= low) {
                     let half = TICK[1] * radius;
                     add(format!("tick {place}"), Piece::Rod(TICK[0] * radius, 2.0 * half), (place - half) * along, along);
-                    texts.push((number(args.get(&CENTER)[axis] + place, ticks), place * along, view.beside(along, 0.5 * (to + from))));
+                    if !is_point {
+                        texts.push((number(args.get(&CENTER)[axis] + place, ticks), place * along, view.beside(along, 0.5 * (to + from))));
+                    }
                 }
             }
             for (text, at, to) in texts.into_iter().filter(|_| unit > 0.0) {

@@ -4,6 +4,7 @@
 //! first hits are compared, so hidden lines do not appear.
 
 use crate::overlay::curves::curves;
+use crate::overlay::regions::{BEHIND, Pixel, beside, corners, sides};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -15,6 +16,7 @@ use tabray_core::world::camera::Projected;
 use tabray_core::world::surface_point::SurfacePoint;
 
 mod curves;
+mod regions;
 
 /// A curve through points of the image, in pixels from its upper left corner.
 pub type Curve = Vec<DVec2>;
@@ -40,20 +42,33 @@ pub struct Text {
     pub height: f64,
 }
 
-/// The side of a pixel, by its column, its row and its direction: 0 along a row, 1 along a column.
+/// The side of a pixel, by its column, its row and its direction: 0 along a row, 1 along a column; or a part of a pixel
+/// ([`regions`]).
 type Key = [usize; 3];
 
-/// How often a side of a pixel is halved toward a line, which is then known to within 1/65536 of a pixel.
-const HALVINGS: u32 = 16;
+/// How often a side of a pixel is halved toward a line, which is then known to within 1/128 of a pixel. That tells two
+/// objects apart. Whether an object hides a part of itself is open until its points are as close as [`CERTAIN`] means:
+/// 1/65536 of a pixel.
+const HALVINGS: u32 = 6;
+const MOST_HALVINGS: u32 = 16;
+
+/// After so many halvings, the deepest of the equal parts has at least so much of a rift. A surface that is only steep
+/// has the same in each, an eighth.
+const STEEP: (u32, f64) = (3, 0.2);
+
+/// How far from an outline the ends of level lines are looked for, as a part of the way to the pixel's corner: where an
+/// outline bends, the straight line between its places may be outside it.
+const INSET: f64 = 0.1;
 
 /// Neighbouring corners that see points farther apart than so many pixels, or normals that differ by so much, may be on
 /// either side of a line; and the same of points as close as the last halving has them, between which it passes.
 const SUSPECT: Rift = Rift { gap: 3.0, turn: 0.25 };
 const CERTAIN: Rift = Rift { gap: 0.05, turn: 0.15 };
 
-/// The rows that are looked at together, and the rays that one thread traces together.
+/// The rows that are looked at together, and the rays that one thread traces together: few, as those near outlines take
+/// longest.
 const ROWS: usize = 16;
-const TOGETHER: usize = 256;
+const TOGETHER: usize = 32;
 
 struct Rift {
     /// In pixels.
@@ -100,9 +115,27 @@ impl Side {
         self.seen.each_ref()
     }
 
+    /// Tells whether both ends show one object, or both none.
+    fn is_of_one(&self) -> bool {
+        let [one, other] = self.seen.map(|seen| seen.map(|seen| seen.object));
+        one == other
+    }
+
     /// Tells whether both ends show one object, on either side of a level line.
     fn spans_levels(&self) -> bool {
-        matches!(self.seen, [Some(one), Some(other)] if one.object == other.object && one.level != other.level)
+        let [one, other] = self.seen.map(|seen| seen.map(|seen| seen.level));
+        self.is_of_one() && one != other
+    }
+
+    /// Returns the parts before and behind a place of an outline, given this side with its ends moved toward it.
+    fn parts(&self, cut: &Self) -> [Self; 2] {
+        let [column, row, along] = self.key;
+        let part = |end: usize, key: Key| {
+            let mut part = Self { key, ..self.clone() };
+            (part.ends[1 - end], part.seen[1 - end]) = (cut.ends[end], cut.seen[end]);
+            part
+        };
+        [part(0, self.key), part(1, [column, row, along + BEHIND])]
     }
 
     fn place(&self) -> (Key, DVec2) {
@@ -144,7 +177,8 @@ impl Overlay {
                     let Some(other) = next.filter(|_| !is_again).and_then(|next| seen.get(next)) else {
                         continue;
                     };
-                    let ends = [corner(column, row), corner(column + 1 - along, row + along)];
+                    let key = [column, row, along];
+                    let ends = corners(key);
                     let nearest = [one, other]
                         .into_iter()
                         .flatten()
@@ -154,29 +188,37 @@ impl Overlay {
                         continue;
                     }
                     let pixel = looks.width(ends, nearest);
-                    let side = Side { key: [column, row, along], ends, seen: [*one, *other], pixel };
+                    let side = Side { key, ends, seen: [*one, *other], pixel };
                     if SUSPECT.between(side.seen(), pixel) >= 1.0 {
-                        suspects.push(side.clone());
-                    }
-                    if side.spans_levels() {
+                        suspects.push(side);
+                    } else if side.spans_levels() {
                         spans.push(side);
                     }
                 }
             }
             last = seen.split_off(seen.len() - width);
-            looks.halve(&mut suspects, |side, middle| {
-                let [one, other] = side.seen();
-                let depth = |ends| SUSPECT.between(ends, side.pixel);
-                depth([one, middle]) >= depth([middle, other])
+            let cuts = looks.outlines(&suspects);
+            let whole = suspects.into_iter().flat_map(|side| match cuts.get(&side.key) {
+                Some(cut) => side.parts(cut).to_vec(),
+                None => vec![side],
             });
-            suspects.retain(|side| CERTAIN.between(side.seen(), side.pixel) >= 1.0);
-            outlines.extend(suspects.iter().map(Side::place));
-            spans.retain(|side| !outlines.contains_key(&side.key));
-            let level = |seen: &Option<Seen>| seen.map(|seen| (seen.object, seen.level));
-            looks.halve(&mut spans, |side, middle| level(middle) != level(side.seen()[0]));
-            levels.extend(spans.iter().map(Side::place));
+            spans.extend(whole.filter(Side::spans_levels));
+            outlines.extend(cuts);
+            levels.extend(looks.levels(spans));
         }
-        Ok(Self { outlines: curves(&outlines), levels: curves(&levels), labels: looks.labels() })
+        let lines = beside(outlines.keys().chain(levels.keys()));
+        let pixels: Vec<_> = lines.into_iter().map(|at| Pixel::new(at, &outlines)).collect();
+        let along = pixels.iter().flat_map(|pixel| &pixel.along_outlines);
+        let along = looks.again(along.filter(|side| side.spans_levels()).cloned().collect());
+        levels.extend(looks.levels(along));
+        let regions = pixels.into_iter().flat_map(|pixel| pixel.regions);
+        let places: BTreeMap<_, _> = outlines.values().map(Side::place).collect();
+        let around = beside(places.keys()).into_iter().map(|at| sides(at).to_vec());
+        Ok(Self {
+            outlines: curves(&places, around),
+            levels: curves(&levels, regions),
+            labels: looks.labels(),
+        })
     }
 }
 
@@ -224,14 +266,57 @@ impl Looks<'_> {
         one.distance(other)
     }
 
-    /// Halves sides again and again. `is_first` tells whether the line is in the first half, given what the middle shows.
-    fn halve(&self, sides: &mut [Side], is_first: impl Fn(&Side, &Option<Seen>) -> bool) {
-        for _ in 0..HALVINGS {
-            let middles: Vec<_> = sides.iter().map(|side| side.place().1).collect();
-            for ((side, middle), seen) in sides.iter_mut().zip(&middles).zip(self.at(&middles)) {
-                let end = usize::from(is_first(side, &seen));
-                (side.ends[end], side.seen[end]) = (*middle, seen);
+    /// Finds the places of outlines on sides that one may pass, as sides whose ends are on either side of it.
+    fn outlines(&self, suspects: &[Side]) -> BTreeMap<Key, Side> {
+        let depth = |side: &Side| SUSPECT.between(side.seen(), side.pixel);
+        let (mut sides, mut found) = (suspects.to_vec(), BTreeMap::new());
+        for count in 1..=MOST_HALVINGS {
+            self.halve(&mut sides, |side, middle| {
+                let [one, other] = side.seen();
+                let depth = |ends| SUSPECT.between(ends, side.pixel);
+                depth([one, middle]) >= depth([middle, other])
+            });
+            if count == STEEP.0 {
+                let parts = sides.into_iter().zip(suspects);
+                let deep = parts.filter(|(part, whole)| depth(part) >= STEEP.1 * depth(whole));
+                sides = deep.map(|(part, _)| part).collect();
             }
+            if count == HALVINGS || count == MOST_HALVINGS {
+                sides.retain(|side| CERTAIN.between(side.seen(), side.pixel) >= 1.0);
+                let is_open = |side: &Side| side.is_of_one() && count < MOST_HALVINGS;
+                let (open, sure) = sides.into_iter().partition(is_open);
+                sides = open;
+                found.extend(Vec::into_iter(sure).map(|side| (side.key, side)));
+            }
+        }
+        found
+    }
+
+    /// Finds the places of level lines on sides that span them.
+    fn levels(&self, mut sides: Vec<Side>) -> Vec<(Key, DVec2)> {
+        let level = |seen: &Option<Seen>| seen.map(|seen| (seen.object, seen.level));
+        for _ in 0..HALVINGS {
+            self.halve(&mut sides, |side, middle| level(middle) != level(side.seen()[0]));
+        }
+        sides.iter().map(Side::place).collect()
+    }
+
+    /// Looks at the ends of lines again, and leaves out those that do not span levels.
+    fn again(&self, mut sides: Vec<Side>) -> Vec<Side> {
+        let seen = self.at(&sides.iter().flat_map(|side| side.ends).collect::<Vec<_>>());
+        for (side, seen) in sides.iter_mut().zip(seen.chunks(2)) {
+            side.seen = [seen[0], seen[1]];
+        }
+        sides.retain(Side::spans_levels);
+        sides
+    }
+
+    /// Halves sides. `is_first` tells whether the line is in the first half, given what the middle shows.
+    fn halve(&self, sides: &mut [Side], is_first: impl Fn(&Side, &Option<Seen>) -> bool) {
+        let middles: Vec<_> = sides.iter().map(|side| side.place().1).collect();
+        for ((side, middle), seen) in sides.iter_mut().zip(&middles).zip(self.at(&middles)) {
+            let end = usize::from(is_first(side, &seen));
+            (side.ends[end], side.seen[end]) = (*middle, seen);
         }
     }
 

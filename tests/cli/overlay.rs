@@ -3,6 +3,7 @@
 use crate::common::program::{folder, names_in, outcome, tabray};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use glam::DVec2;
 use std::fs;
 use tempfile::TempDir;
 
@@ -13,6 +14,13 @@ material white { ambient 0.5 0.5 0.5 } material ink { ambient 0 0 0 }
 lines rings { formula y  spacing 0.4  altmaterial ink }
 sphere one { material white  center 0 0 0  radius 1  shader rings }
 sphere two { material white  center 1 0 -3  radius 0.8 }\n";
+
+/// A saddle in a box, whose edges and whose own slopes cut its level lines off.
+const SADDLE: &str = "look_at eye { pixeldim 240 180  position 6 4 8  target 0.1 0 0  angle 22 }
+background far { colour 1 1 1 }
+material white { ambient 1 1 1 }
+lines heights { formula y  spacing 0.25  width 0  altmaterial white }
+implicit saddle { material white  formula \"y = x^2 - z^2\"  box -1 -1 -1  1 1 1  shader heights }\n";
 
 /// Axes, and a ball that hides the half of one, and what follows them.
 const AXES: &str = "look_at eye { pixeldim 160 120  position 4 3 7  target 0.6 0.9 0  angle 34  samples 4 }
@@ -91,9 +99,9 @@ fn outlines_and_level_lines_are_where_they_are_to_hundredths_of_a_pixel_and_hidd
             !is_closed && points.iter().all(|at| (at[1] - (60.0 + 20.0 * line as f64)).abs() < 0.02),
             "{points:?}"
         );
-        let ends = [points[0][0], points[points.len() - 1][0]];
-        let half = (50.0_f64.powi(2) - (points[0][1] - 100.0).powi(2)).sqrt();
-        assert!((ends[0] - ends[1]).abs() > 2.0 * half - 4.5, "{ends:?}");
+        for end in [points[0], points[points.len() - 1]] {
+            assert!((from(end, 100.0) - 50.0).abs() < 0.2, "{end:?}");
+        }
     }
     let one = drawn(&folder, "one", &["--threads", "1"]);
     assert!(svg == one);
@@ -102,6 +110,27 @@ fn outlines_and_level_lines_are_where_they_are_to_hundredths_of_a_pixel_and_hidd
     assert!(part.contains("viewBox=\"0 50 60 60\""), "{part}");
     let points: Vec<_> = curves(&part, "outlines").into_iter().flat_map(|(points, _)| points).collect();
     assert!(points.iter().all(|at| at[0] <= 60.0 && (49.0..=111.0).contains(&at[1])), "{points:?}");
+}
+
+#[test]
+fn level_lines_reach_the_edges_of_a_surface_and_the_outlines_that_hide_them() {
+    let folder = of(SADDLE);
+    let svg = drawn(&folder, "a", &[]);
+    let outlines = curves(&svg, "outlines");
+    let sides = outlines.iter().flat_map(|(points, _)| points.windows(2));
+    let sides: Vec<_> = sides.map(|side| [DVec2::from(side[0]), DVec2::from(side[1])]).collect();
+    let from = |at: DVec2, [one, other]: [DVec2; 2]| {
+        let part = (at - one).dot(other - one) / one.distance_squared(other);
+        at.distance(one.lerp(other, if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) }))
+    };
+    let levels = curves(&svg, "levels");
+    let open = levels.iter().filter(|(_, is_closed)| !is_closed);
+    let ends: Vec<_> = open.flat_map(|(points, _)| [points[0], points[points.len() - 1]]).collect();
+    // Four meet in the saddle's middle, which is level.
+    let inside = |at: [f64; 2]| ends.iter().filter(|end| **end == at).count() == 4;
+    let off = |at: [f64; 2]| sides.iter().map(|side| from(at.into(), *side)).fold(f64::INFINITY, f64::min);
+    let far: Vec<_> = ends.iter().filter(|at| off(**at) > 0.2 && !inside(**at)).collect();
+    assert!(ends.len() > 30 && far.is_empty(), "{far:?} of {}", ends.len());
 }
 
 #[test]
@@ -140,6 +169,16 @@ fn axes_count_world_coordinates_and_take_so_many_strokes() {
     let many = ["render", "a.ray", "-o", "b.png", "--set", "frame.ticks=0.04"];
     let (status, said) = run(&folder, &many);
     assert!(status == 2 && said.contains("axes `frame` has numbers of more than 1024 strokes"), "{said}");
+}
+
+#[test]
+fn an_axis_that_is_seen_from_its_end_has_its_name_alone() {
+    let folder = of("orthographic eye { pixeldim 90 90  position 0 0 9  target 0 0 0  width 6 }
+background far { colour 1 1 1 }
+material grey { ambient 0.8 0.8 0.8 }
+axes frame { material grey  from -2 -2 -2  to 2.5 2.5 2.5  radius 0.02  numbers 0.3 }\n");
+    let svg = drawn(&folder, "a", &[]);
+    assert_eq!(texts(&svg).join(" "), "x 1 \u{2212}1 2 \u{2212}2 y 1 \u{2212}1 2 \u{2212}2 z");
 }
 
 #[test]

@@ -76,3 +76,23 @@ fn a_mesh_takes_time_for_its_faces() {
     println!("{coarse:.0} and {fine:.0}");
     assert!(fine < 2.0 * coarse, "{fine:.0} of {coarse:.0}");
 }
+
+/// Rays near an outline of a surface by two parameters cost most.
+#[test]
+fn the_lines_over_an_image_cost_a_few_times_the_image() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a path that is text").to_owned();
+    let (scene, image, lines) = (path("knot.ray"), path("knot.png"), path("knot.svg"));
+    let text = "orthographic eye { pixeldim 60 60  position 0 0 9  target 0 0 0  width 8 }
+background paper { colour 1 1 1 }
+material white { ambient 1 1 1 }
+tube trefoil { material white  x \"sin(t) + 2*sin(2*t)\"  y \"cos(t) - 2*cos(2*t)\"  z \"-sin(3*t)\"
+               t 0 \"2*pi\"  radius 0.3 }";
+    fs::write(&scene, text).expect("a file");
+    let cost = |more: &[&str]| instructions(&[&["render", &scene, "-o", &image], more].concat());
+    let Some(alone) = cost(&[]) else { return };
+    let both = cost(&["--overlay", &lines]).expect("Valgrind");
+    let times = (both - alone) as f64 / alone as f64;
+    println!("{times:.1} times");
+    assert!(times < 12.0, "{times:.1} times");
+}

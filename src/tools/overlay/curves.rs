@@ -1,8 +1,8 @@
-//! Joins the places where lines cross the sides of pixels to curves.
+//! Joins places of lines to curves.
 
 use super::{Curve, Key};
 use glam::DVec2;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// The farthest that a curve may pass from the places that it joins, in pixels.
 const TOLERANCE: f64 = 0.02;
@@ -14,9 +14,14 @@ struct Node {
     is_end: bool,
 }
 
-/// Joins places on the sides of pixels: the two on a pixel's sides by a line, and more of them by lines that meet in
-/// their middle.
-pub(super) fn curves(places: &BTreeMap<Key, DVec2>) -> Vec<Curve> {
+/// The third number of the key of a region's middle; the first counts regions.
+const MIDDLE: usize = usize::MAX;
+
+/// Joins places around regions: two by a line, and more of them by lines that meet in their middle.
+pub(super) fn curves(
+    places: &BTreeMap<Key, DVec2>,
+    regions: impl IntoIterator<Item = Vec<Key>>,
+) -> Vec<Curve> {
     let mut nodes: BTreeMap<Key, Node> =
         places.iter().map(|(key, at)| (*key, Node { at: *at, links: Vec::new(), is_end: false })).collect();
     let link = |nodes: &mut BTreeMap<Key, Node>, [one, other]: [Key; 2]| {
@@ -24,30 +29,16 @@ pub(super) fn curves(places: &BTreeMap<Key, DVec2>) -> Vec<Curve> {
             nodes.entry(from).and_modify(|node| node.links.push(to));
         }
     };
-    let pixels: BTreeSet<_> = places
-        .keys()
-        .flat_map(|&[column, row, along]| {
-            let before =
-                if along == 0 { [column, row.wrapping_sub(1)] } else { [column.wrapping_sub(1), row] };
-            [before, [column, row]]
-        })
-        .collect();
-    for [column, row] in pixels {
-        let sides = [
-            [column, row, 0],
-            [column, row, 1],
-            [column, row.wrapping_add(1), 0],
-            [column.wrapping_add(1), row, 1],
-        ];
-        let on: Vec<_> = sides.into_iter().filter(|side| places.contains_key(side)).collect();
+    for (count, around) in regions.into_iter().enumerate() {
+        let on: Vec<_> = around.into_iter().filter(|key| places.contains_key(key)).collect();
         match on[..] {
             [] | [_] => {}
             [one, other] => link(&mut nodes, [one, other]),
             _ => {
-                let at = on.iter().map(|side| places[side]).sum::<DVec2>() / on.len() as f64;
-                let middle = [column, row, 2];
+                let at = on.iter().map(|key| places[key]).sum::<DVec2>() / on.len() as f64;
+                let middle = [count, 0, MIDDLE];
                 nodes.insert(middle, Node { at, links: Vec::new(), is_end: true });
-                on.into_iter().for_each(|side| link(&mut nodes, [side, middle]));
+                on.into_iter().for_each(|key| link(&mut nodes, [key, middle]));
             }
         }
     }
