@@ -136,6 +136,8 @@ fn what_is_not_proven_of_how_a_mesh_is_connected_is_told_with_what_to_do() {
         status == 1 && err.contains(" cells, which a smaller `box` or a `clip` may leave out: "),
         "{err}"
     );
+    let singular = "warning: the surface may be singular, with a gradient of 0, along a curve from ";
+    assert!(err.lines().any(|line| line.starts_with(singular) && line.ends_with(" cells")), "{err}");
     for (name, said) in [
         ("b", "connected as the object is: look at it where parts nearly touch\n"),
         ("h", "as at a node or an edge; a smaller `--error` makes these places smaller\n"),

@@ -1,6 +1,6 @@
 //! `tabray mesh`: writes an object of a scene as a closed mesh of triangles.
 
-use crate::surface_mesh::{Body, Event, Format, NoBody, NoMesh, Sheet, mesh};
+use crate::surface_mesh::{Body, Event, Format, NoBody, NoMesh, Sheet, Singular, mesh};
 use glam::DVec3;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -171,11 +171,10 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if !made.singular.is_empty() {
         messages::warning(
             &format!(
-                "the surface may have {}, where its gradient is 0: {}",
-                count(made.singular.len(), "singular point"),
-                first(&made.singular, |at| point(*at))
+                "the surface may be singular, with a gradient of 0, {}",
+                first(&made.singular, |place| singular(*place))
             ),
-            Some("a smaller `box`, or a `clip`, leaves them out"),
+            Some("a smaller `box`, or a `clip`, leaves such places out"),
         );
     }
     if made.far.is_empty() {
@@ -209,6 +208,20 @@ fn rounded(number: usize) -> usize {
 fn point(at: DVec3) -> String {
     let signed = |number: f64| format!("{}{}", if number < 0.0 { "-" } else { "" }, short(number.abs()));
     at.to_array().map(signed).join(" ")
+}
+
+/// Says where a surface is singular.
+fn singular(place: Singular) -> String {
+    let between = |[one, other]: [DVec3; 2]| format!("from {} to {}", point(one), point(other));
+    match place {
+        Singular::Point(at) => format!("at {}", point(at)),
+        Singular::Curve(ends, cells) => {
+            format!("along a curve {} through {}", between(ends), count(cells, "cell"))
+        }
+        Singular::Part(corners, cells) => {
+            format!("in {}, {}", count(cells, "adjoining cell"), between(corners))
+        }
+    }
 }
 
 /// Lists the first places.

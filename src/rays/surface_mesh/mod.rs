@@ -23,7 +23,7 @@ mod thick;
 mod triangles;
 
 pub use body::{Body, NoBody};
-pub use closed::SurfaceMesh;
+pub use closed::{Singular, SurfaceMesh};
 pub use file::Format;
 pub use thick::Sheet;
 

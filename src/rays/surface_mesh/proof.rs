@@ -3,8 +3,10 @@
 use super::Done;
 use super::body::Body;
 use super::cells::Cells;
+use super::closed::Singular;
 use super::triangles::Triangles;
 use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
 use std::mem::replace;
 use tabray_core::parallel;
 
@@ -116,19 +118,55 @@ fn has_tangled_part(body: &Body<'_>, middle: DVec3, half: f64, halvings: u32) ->
 /// The number of times that a cell is halved in search of a point where the gradient is 0.
 const SINGULAR: u32 = 8;
 
-/// Finds points near which the surface may be singular, in cells that are not beside each other.
-pub fn singular(cells: &Cells, body: &Body<'_>) -> Vec<DVec3> {
+/// The most that cells differ in an index that a curve reaches in the same number of steps.
+const SLENDER: u32 = 2;
+
+/// Finds where the surface may be singular: cells beside each other are one place.
+pub fn singular(cells: &Cells, body: &Body<'_>) -> Vec<Singular> {
     let found = parallel::map_ranges(cells.list.len(), MANY, &|range| {
-        let middles = range.map(|cell| cells.middle(cells.list[cell]));
-        middles.filter_map(|middle| singular_in(body, middle, cells.side() / 2.0, SINGULAR)).collect()
+        let at = |cell| singular_in(body, cells.middle(cells.list[cell]), cells.side() / 2.0, SINGULAR);
+        range.filter_map(|cell| Some((cell, at(cell)?))).collect()
     });
-    let mut apart: Vec<DVec3> = Vec::new();
-    for at in found {
-        if apart.iter().all(|other| other.distance(at) > 2.0 * cells.diagonal()) {
-            apart.push(at);
-        }
+    let mut left: BTreeMap<usize, DVec3> = found.into_iter().collect();
+    let mut places = Vec::new();
+    while let Some((start, _)) = left.first_key_value() {
+        let last = |cell: usize| reached(cells, &left, cell).pop().and_then(|step| step.first().copied());
+        let one_end = last(*start).unwrap_or(*start);
+        let steps = reached(cells, &left, one_end);
+        let all: Vec<_> = steps.concat();
+        let points: Vec<_> = all.iter().map(|cell| left[cell]).collect();
+        let [low, high] = [DVec3::min as fn(_, _) -> _, DVec3::max]
+            .map(|of| points.iter().copied().reduce(of).unwrap_or_default());
+        let is_slender = |step: &Vec<usize>| {
+            (0..3).all(|axis| {
+                let places = step.iter().map(|cell| cells.list[*cell][axis]);
+                places.clone().max().zip(places.min()).is_none_or(|(most, least)| most - least <= SLENDER)
+            })
+        };
+        places.push(match all.len() {
+            _ if (high - low).max_element() < cells.side() => Singular::Point(points[0]),
+            count if steps.iter().all(is_slender) => Singular::Curve([points[0], points[count - 1]], count),
+            count => Singular::Part([low, high], count),
+        });
+        all.iter().for_each(|cell| _ = left.remove(cell));
     }
-    apart
+    places
+}
+
+/// Returns the cells that steps from a cell to those around it reach, by the number of steps.
+fn reached(cells: &Cells, of: &BTreeMap<usize, DVec3>, from: usize) -> Vec<Vec<usize>> {
+    let (mut known, mut steps) = (BTreeSet::from([from]), vec![vec![from]]);
+    loop {
+        let last = steps.last().into_iter().flatten();
+        let next: Vec<_> = last
+            .flat_map(|cell| cells.around(*cell))
+            .filter(|cell| of.contains_key(cell) && known.insert(*cell))
+            .collect();
+        if next.is_empty() {
+            return steps;
+        }
+        steps.push(next);
+    }
 }
 
 fn singular_in(body: &Body<'_>, middle: DVec3, half: f64, halvings: u32) -> Option<DVec3> {

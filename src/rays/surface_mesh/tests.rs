@@ -180,13 +180,37 @@ fn a_surface_with_nodes_is_proven_with_few_triangles() {
     let made = meshed(&implicit("x^2 + y^2 + z^2 + 2*x*y*z - 1", 1.2), 0.1);
     assert!(made.far.is_empty(), "{} places", made.far.len());
     assert!(made.faces.len() < 5_000, "{}", made.faces.len());
-    let found = &made.singular;
+    let point = |place: &Singular| match place {
+        Singular::Point(at) => *at,
+        other => panic!("{other:?}"),
+    };
+    let found: Vec<_> = made.singular.iter().map(point).collect();
     assert!(found.len() == 4 && found.iter().all(|at| at.abs().max_element() < 1.01), "{found:?}");
     assert!(
         found.iter().all(|at| at.abs().min_element() > 0.99 && at.to_array().iter().product::<f64>() < 0.0)
     );
     let smooth = meshed(&implicit("x^2 + y^2 + z^2 + x*y*z - 1", 1.2), 0.1);
     assert!(smooth.singular.is_empty(), "{:?}", smooth.singular);
+}
+
+#[test]
+fn singular_points_that_form_a_curve_are_one() {
+    // H. Whitney's umbrella, whose handle is an axis.
+    let made = meshed(&implicit("x^2 - y^2*z", 1.0), 0.1);
+    let is_end = |at: DVec3, z: f64| at.distance(z * DVec3::Z) < 0.05;
+    let [curve, ..] = made.singular[..] else { panic!("{:?}", made.singular) };
+    let Singular::Curve([one, other], cells) = curve else { panic!("{curve:?}") };
+    assert!(is_end(one, one.z.signum()) && is_end(other, -one.z.signum()), "{curve:?}");
+    assert!((cells as f64 - 2.0 / made.cell).abs() < 4.0, "{cells} of {}", made.cell);
+    // A circle has no ends, and J. Steiner's surface has three curves that meet.
+    for (formula, size) in
+        [("((x^2 + y^2) - 0.36)^2 - z^2", 0.6), ("x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z", 1.0)]
+    {
+        let made = meshed(&implicit(formula, 1.0), 0.1);
+        let [Singular::Part([low, high], _)] = made.singular[..] else { panic!("{:?}", made.singular) };
+        let extents = (high - low).to_array();
+        assert!(extents[..2].iter().all(|extent| (extent - 2.0 * size).abs() < 0.05), "{low} {high}");
+    }
 }
 
 #[test]
