@@ -124,6 +124,26 @@ fn an_open_surface_becomes_a_mesh_with_a_thickness() {
 }
 
 #[test]
+fn points_near_a_surface_are_looked_for_with_progress() {
+    let folder = folder();
+    let scene = "material m { } sphere s { material m  center 0 0 0  radius 1 }";
+    fs::write(folder.path().join("a.ray"), scene).expect("written");
+    let args = ["mesh", "a.ray", "s", "-o", "a.stl", "--thickness", "0.3", "--error", "0.06"];
+    let (status, _, err) = outcome(tabray(&folder).args(args).args(["--progress", "json"]));
+    let lines: Vec<_> = err.lines().collect();
+    let made = lines.iter().position(|line| line.ends_with(" triangles are to be made, and then merged"));
+    assert!(status == 0 && made.is_some_and(|made| made > 0), "{err}");
+    assert!(lines[0].starts_with("{\"progress\":{\"done\":"), "{err}");
+    // All that was expected, about.
+    let last = lines[made.unwrap_or(1) - 1];
+    let number = |name: &str| {
+        let after = last.split(&format!("\"{name}\":")).nth(1).expect("a number");
+        after.split([',', '}']).next().and_then(|number| number.parse::<f64>().ok()).expect("a number")
+    };
+    assert!((number("done") / number("of") - 1.0).abs() < 0.25, "{last}");
+}
+
+#[test]
 fn what_is_not_proven_of_how_a_mesh_is_connected_is_told_with_what_to_do() {
     let folder = folder();
     let scene = "material m { } box b { material m  center 0 0 0  size 1 1 1 }

@@ -4,7 +4,7 @@ use crate::surface_mesh::{Body, Event, Format, NoBody, NoMesh, Sheet, Singular, 
 use glam::DVec3;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{PoisonError, RwLock};
 use tabray_cli::files::input;
 use tabray_cli::files::output::{self, Output};
 use tabray_cli::options::named::{Value, by_name};
@@ -109,7 +109,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         // Half of the error is for the distance from the surface, the other half for the triangles.
         Some(thickness) => {
             let (sheet, share) = (Sheet::of(&model, &args.name).map_err(refused)?, error / 2.0);
-            let body = renderer.run(|| sheet.thickened(thickness, share, memory));
+            let body = with_progress(|tell| renderer.run(|| sheet.thickened(thickness, share, memory, tell)));
             let body = body.map_err(|fault| match fault {
                 // An error of which there is a mesh would be too large for the thickness.
                 NoMesh::TooMany(least) if 2.0 * least >= thickness / 2.0 => {
@@ -125,19 +125,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             (body?, share)
         }
     };
-    let progress = OnceLock::new();
-    let tell = |event| match event {
-        Event::Expected { triangles, steps } => {
-            messages::note(&format!(
-                "about {} triangles are to be made, and then merged",
-                rounded(triangles)
-            ));
-            progress.get_or_init(|| Progress::new(steps));
-        }
-        Event::Done(steps) => progress.get().into_iter().for_each(|progress| progress.advance(steps)),
-    };
-    let made = renderer.run(|| mesh(&body, share, memory, &tell));
-    progress.get().into_iter().for_each(Progress::end);
+    let made = with_progress(|tell| renderer.run(|| mesh(&body, share, memory, tell)));
     let made = made.map_err(|fault| no_mesh(name, (error, share), &fault))?;
     let mut out = BufWriter::new(Output::open(output)?);
     let written = format.write(&made, name, &mut out);
@@ -197,6 +185,34 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         count(made.far.len(), "cell"),
         listed(&made.far)
     )))
+}
+
+/// Does work, and shows its progress.
+fn with_progress<R>(work: impl FnOnce(&(dyn Fn(Event) + Sync)) -> R) -> R {
+    let progress: RwLock<Option<Progress>> = RwLock::default();
+    let begin = |steps: Option<usize>| {
+        let mut progress = progress.write().unwrap_or_else(PoisonError::into_inner);
+        progress.iter().for_each(Progress::end);
+        *progress = steps.map(Progress::new);
+    };
+    let tell = |event| match event {
+        Event::Expected { triangles, steps } => {
+            if let Some(triangles) = triangles {
+                messages::note(&format!(
+                    "about {} triangles are to be made, and then merged",
+                    rounded(triangles)
+                ));
+            }
+            begin(Some(steps));
+        }
+        Event::Done(steps) => {
+            let progress = progress.read().unwrap_or_else(PoisonError::into_inner);
+            progress.iter().for_each(|progress| progress.advance(steps));
+        }
+    };
+    let done = work(&tell);
+    begin(None);
+    done
 }
 
 /// Returns a number with two digits and zeros.

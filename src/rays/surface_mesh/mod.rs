@@ -30,6 +30,7 @@ pub use thick::Sheet;
 use cells::Cells;
 use glam::DVec3;
 use merge::{ROUNDS, merged};
+use thick::Thick;
 use triangles::Triangles;
 
 /// The least number of times that the cube is halved: a body is not missed between corners far apart.
@@ -73,8 +74,9 @@ const MOST_OF: f64 = 0.99;
 pub enum Event {
     /// Most of the work is about to begin. A mesh that takes little time is made without this.
     Expected {
-        /// About how many triangles are to be made, before they are merged.
-        triangles: usize,
+        /// About how many triangles are to be made, before they are merged; `None` while points of a surface are looked
+        /// for.
+        triangles: Option<usize>,
         /// In about how many steps.
         steps: usize,
     },
@@ -106,8 +108,8 @@ pub fn mesh(
     }
     let last = last.max(MIN_HALVINGS);
     let done = |steps: usize| tell(Event::Done(steps));
-    if body.thick().is_some() {
-        return of_distance(body, error, most, tell);
+    if let Some(thick) = body.thick() {
+        return of_distance(body, thick, error, most, tell);
     }
     loop {
         cells.halve(&may_be_crossed, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
@@ -144,30 +146,41 @@ pub fn mesh(
     }
 }
 
-/// Makes the mesh of the points near a surface, without a search for cells that suffice: no point of a triangle is farther
-/// from a corner than in one with equal sides, and the distance that bounds the body changes by no more.
+/// Makes the mesh of the points near a surface, without a search for cells that suffice. First, these are as large as they
+/// may be where the body's border is smooth. Where its parts meet at an edge, they are made anew, so small that no point
+/// of a triangle is farther from a corner than the error, and its distance from the surface differs by no more.
 fn of_distance(
     body: &Body<'_>,
+    thick: &Thick,
     error: f64,
     most: usize,
     tell: &(dyn Fn(Event) + Sync),
 ) -> Result<SurfaceMesh, NoMesh> {
-    let mut cells = Cells::enclosing(&body.bounds);
     let may_be_crossed = |middle: DVec3, half: f64| body.contains(middle, half).is_none();
     let done = |steps: usize| tell(Event::Done(steps));
-    let last = cells.fit(MOST_OF * 3f64.sqrt() * error / 2.0);
-    while cells.halvings() < last {
-        cells.halve(&may_be_crossed, most, &done).map_err(|()| NoMesh::TooMany(2.0 * cells.diagonal()))?;
+    let triangles_in = |diagonal: f64, least_error: &dyn Fn(f64) -> f64| {
+        let mut cells = Cells::enclosing(&body.bounds);
+        let last = cells.fit(MOST_OF * diagonal);
+        while cells.halvings() < last {
+            cells
+                .halve(&may_be_crossed, most, &done)
+                .map_err(|()| NoMesh::TooMany(least_error(cells.diagonal())))?;
+        }
+        if cells.list.len() > MANY_CELLS {
+            let vertices = VERTICES * cells.list.len();
+            let steps = vertices * (1 + ROUNDS as usize);
+            tell(Event::Expected { triangles: Some(2 * vertices), steps });
+        }
+        let triangles = Triangles::of(&cells, body, &done);
+        if triangles.faces.is_empty() { Err(NoMesh::Empty) } else { Ok((cells, triangles)) }
+    };
+    let (mut cells, mut triangles) =
+        triangles_in(thick.smooth_diagonal(error / 2.0), &|diagonal| thick.smooth_error(diagonal))?;
+    let mut far = Vec::new();
+    if !thick.is_near(&triangles, error / 2.0) {
+        (cells, triangles) = triangles_in(3f64.sqrt() * error / 2.0, &|diagonal| 2.0 * diagonal)?;
+        far = proof::large(&cells, &triangles, error / 2.0);
     }
-    if cells.list.len() > MANY_CELLS {
-        let vertices = VERTICES * cells.list.len();
-        tell(Event::Expected { triangles: 2 * vertices, steps: vertices * (1 + ROUNDS as usize) });
-    }
-    let triangles = Triangles::of(&cells, body, &done);
-    if triangles.faces.is_empty() {
-        return Err(NoMesh::Empty);
-    }
-    let far = proof::large(&cells, &triangles, error / 2.0);
     finished(&cells, triangles, body, (error, far), None, &done)
 }
 
@@ -186,7 +199,7 @@ fn expected(cells: &Cells, triangles: &Triangles, body: &Body<'_>, error: f64, l
     let vertices = triangles.vertices.len();
     let steps =
         (growth - 1) * 4 / 3 * (count / 4 + 4 * count + vertices) + growth * vertices * ROUNDS as usize;
-    Event::Expected { triangles: growth * triangles.faces.len(), steps }
+    Event::Expected { triangles: Some(growth * triangles.faces.len()), steps }
 }
 
 /// Returns a mesh with fewer triangles, and the cells in which its proof fails. It is known to be within half of the

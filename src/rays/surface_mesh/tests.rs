@@ -42,7 +42,7 @@ fn meshed(objects: &str, error: f64) -> SurfaceMesh {
 fn thickened(objects: &str, thickness: f64, error: f64) -> SurfaceMesh {
     let model = model(objects);
     let sheet = Sheet::of(&model, "a").expect("an object with an equation");
-    let body = sheet.thickened(thickness, error / 2.0, None).expect("a body");
+    let body = sheet.thickened(thickness, error / 2.0, None, &|_| ()).expect("a body");
     closed(mesh(&body, error / 2.0, None, &|_| ()).expect("a mesh"))
 }
 
@@ -305,13 +305,27 @@ fn a_node_refines_no_cell_elsewhere() {
 }
 
 #[test]
+fn cells_of_a_smooth_thickness_are_large() {
+    let (thickness, error) = (0.4, 0.04);
+    let ball = thickened("sphere a { material m  center 0 0 0  radius 0.5 }", thickness, error);
+    // Surfaces that cross have a border with edges.
+    let cross = thickened(&implicit("x*y", 0.3), thickness, error);
+    assert!(ball.cell > 3.0 * cross.cell, "{} {}", ball.cell, cross.cell);
+    assert!(ball.far.is_empty() && cross.far.is_empty());
+    for at in samples(&ball) {
+        let off = ((at.length() - 0.5).abs() - thickness / 2.0).abs();
+        assert!(off <= error, "{at} is off by {off}");
+    }
+}
+
+#[test]
 fn the_work_is_estimated_before_most_of_it() {
     let model = model(BALL);
     let body = Body::of(&model, "a").expect("a closed object");
     let (expected, done) = (Mutex::new((0, 0)), AtomicUsize::new(0));
     let made = mesh(&body, 0.002, None, &|event| match event {
         Event::Expected { triangles, steps } => {
-            *expected.lock().expect("no panic") = (triangles, steps);
+            *expected.lock().expect("no panic") = (triangles.unwrap_or(0), steps);
             done.store(0, Ordering::Relaxed);
         }
         Event::Done(steps) => drop(done.fetch_add(steps, Ordering::Relaxed)),

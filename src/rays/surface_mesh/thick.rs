@@ -4,10 +4,11 @@
 //! each of them, a short ray hits the surface for certain. The distance from the nearest of these hits is that from the
 //! surface, or a little more: at most [`APART`] times half the diagonal of a cell.
 
-use super::NoMesh;
 use super::body::{Body, NoBody, named};
 use super::cells::Cells;
 use super::proof::eighths;
+use super::triangles::Triangles;
+use super::{Event, NoMesh, PILOT};
 use glam::DVec3;
 use tabray_core::geometry::sight::Line;
 use tabray_core::geometry::{Aabb, Bvh, MISS, Ray, RayBall, RayError, RayRange};
@@ -42,6 +43,12 @@ const SECANTS: u32 = 3;
 
 /// The minimum number of cells for which threads share the work.
 const MANY: usize = 64;
+
+/// The part of a diagonal that remains as the nearest known point of the surface is a little beside the nearest one.
+const SMOOTH: f64 = 0.9;
+
+/// The number of steps that take a noticeable time.
+const MANY_STEPS: usize = 1 << 14;
 
 /// The points that are no farther from a surface than half of a thickness.
 pub struct Thick {
@@ -82,6 +89,7 @@ impl<'m> Sheet<'m> {
         thickness: f64,
         error: f64,
         memory: Option<u64>,
+        tell: &(dyn Fn(Event) + Sync),
     ) -> Result<Body<'static>, NoMesh> {
         let most = memory.map_or(MAX_CELLS, |bytes| MAX_CELLS.min((bytes / CELL) as usize));
         let mut cells = Cells::enclosing(&self.bounds);
@@ -94,13 +102,23 @@ impl<'m> Sheet<'m> {
             self.bounds.overlaps(&Aabb { low: middle - half, high: middle + half })
                 && self.shapes.iter().any(|shape| may_touch(shape, middle, half))
         };
+        let done = |steps: usize| tell(Event::Done(steps));
         while cells.halvings() < last {
-            if cells.halve(&may_be_crossed, most, &|_| ()).is_err() {
+            if cells.halvings() == PILOT {
+                // Halved once, four times as many are crossed. In the end, each is examined twice.
+                let growth = 4usize.saturating_pow(last - PILOT);
+                let steps = cells.list.len().saturating_mul(growth / 3 + 2 * growth);
+                if steps > MANY_STEPS {
+                    tell(Event::Expected { triangles: None, steps });
+                }
+            }
+            if cells.halve(&may_be_crossed, most, &done).is_err() {
                 return Err(NoMesh::TooMany(APART / 2.0 * cells.diagonal()));
             }
         }
         let radius = cells.diagonal() / 2.0;
         let found = parallel::filled(cells.list.len(), MANY, |cell| {
+            done(1);
             let middle = cells.middle(cells.list[cell]);
             self.shapes.iter().find_map(|shape| point_near(shape, middle, radius))
         });
@@ -111,6 +129,7 @@ impl<'m> Sheet<'m> {
         let tree = Bvh::of(points.len(), |index| Aabb { low: points[index], high: points[index] });
         let thick = Thick { half: thickness / 2.0, points, tree };
         let doubtful = parallel::map_ranges(cells.list.len(), MANY, &|range| {
+            done(range.len());
             let is_doubtful = |cell: &usize| {
                 found[*cell].is_none()
                     && self.is_doubtful(&thick, cells.middle(cells.list[*cell]), radius, DEEPEST)
@@ -167,16 +186,60 @@ impl Thick {
         self.half - self.distance(at, MISS).unwrap_or(MISS)
     }
 
+    /// Returns the diagonal of cells whose triangles are within an error of the border where that is smooth.
+    pub fn smooth_diagonal(&self, error: f64) -> f64 {
+        SMOOTH * (2.0 * self.half * error).sqrt()
+    }
+
+    /// Returns the error with which cells of a diagonal suffice where the border is smooth, twice as large as that of
+    /// their triangles.
+    pub fn smooth_error(&self, diagonal: f64) -> f64 {
+        let diagonal = diagonal / SMOOTH;
+        diagonal * diagonal / self.half
+    }
+
+    /// Tells whether the distances of all points of triangles from the surface certainly differ from half of the thickness
+    /// by at most an error.
+    pub fn is_near(&self, triangles: &Triangles, error: f64) -> bool {
+        let square = |of: f64| of * of;
+        let is_off = |face: &usize| {
+            let corners = triangles.corners(*face);
+            let largest = |of: [f64; 3]| of.into_iter().fold(0.0, f64::max);
+            let side = largest([0, 1, 2].map(|at| corners[at].distance_squared(corners[(at + 1) % 3])));
+            let slack =
+                largest(triangles.faces[*face].map(|vertex| triangles.vertices[vertex as usize].slack));
+            // The square of the distance from a point, less that from the origin, is linear, and the least of such
+            // functions is concave: in a triangle, it is no less than between the corners. Between the corners, the square
+            // of the distance from the origin is too large by at most a third of that of a side.
+            let low = square((self.half - slack).max(0.0)) - side / 3.0;
+            // No point is farther from a point of the surface than a corner is.
+            let middle = corners.into_iter().sum::<DVec3>() / 3.0;
+            let high =
+                self.nearest(middle, MISS).map(|(_, at)| largest(corners.map(|corner| corner.distance(at))));
+            low < square((self.half - error).max(0.0)) || high.is_none_or(|high| high > self.half + error)
+        };
+        parallel::map_ranges(triangles.faces.len(), MANY, &|mut range| {
+            range.find(is_off).into_iter().collect()
+        })
+        .is_empty()
+    }
+
     /// Returns the distance from the nearest point of the surface that is known, up to a limit.
     fn distance(&self, at: DVec3, limit: f64) -> Option<f64> {
-        let (mut nearest, mut is_any) = (limit, false);
+        self.nearest(at, limit).map(|(distance, _)| distance)
+    }
+
+    /// Returns the nearest point of the surface that is known, and its distance, up to a limit.
+    fn nearest(&self, at: DVec3, limit: f64) -> Option<(f64, DVec3)> {
+        let (mut limit, mut nearest) = (limit, None);
         self.tree.around(at, limit, &mut |index| {
             let distance = self.points[index].distance(at);
-            is_any |= distance <= nearest;
-            nearest = nearest.min(distance);
-            nearest
+            if distance <= limit {
+                (limit, nearest) = (distance, Some((distance, self.points[index])));
+            }
+            limit
         });
-        is_any.then_some(nearest)
+        nearest
     }
 }
 
