@@ -88,9 +88,7 @@ impl Surface {
         let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
         for (_, _, face) in &places {
             let is_hidden = self.is_certainly_hidden::<A, f64>(*face, &coarse, at.coarse(), None);
-            match is_hidden
-                .or_else(|| self.is_certainly_hidden::<A, F>(*face, line, F::narrow(at), None))
-            {
+            match is_hidden.or_else(|| self.is_certainly_hidden::<A, F>(*face, line, F::narrow(at), None)) {
                 Some(true) => {}
                 Some(false) => return Some((hit, *face)),
                 None => return Some((HitEnclosure::Doubtful(F::narrow(at).low), *face)),
