@@ -42,7 +42,7 @@ impl Camera for Pinhole {
 
     fn project(&self, point: DVec3, pixels: [usize; 2]) -> Projected {
         let (from, depth) = (self.viewpoint, self.viewpoint.z - point.z);
-        if depth.is_nan() || depth * from.z.signum() <= 0.0 || pixels.contains(&1) {
+        if depth.is_nan() || depth * from.z.signum() <= 0.0 || pixels.iter().any(|count| *count < 2) {
             return Projected::Nowhere;
         }
         let on_screen = from.truncate() + (point - from).truncate() * (from.z / depth);

@@ -45,7 +45,7 @@ impl QueryRay {
     }
 
     /// Returns the ray as one that starts on a surface, at the point nearest to its origin, which is rounded. It does not
-    /// hit that surface there.
+    /// hit that surface there. Bounds of its t hold for all starts within the error of its origin.
     #[must_use]
     pub fn leaving(self, start: Start) -> Self {
         Self { leaves: Some(start), ..self }

@@ -96,26 +96,41 @@ impl<'m> Query<'m> {
     /// Returns what is proven about a ray's first hit of an object, and the part that is hit.
     fn certify(&self, ray: &QueryRay, object: usize, precision: Precision) -> (Enclosure, usize) {
         let shape = self.shape(object);
-        match (ray.leaves().filter(|start| start.object == object), shape.proven()) {
-            (Some(Start { part, .. }), Some(proven)) => {
-                certify::first_part_from(proven, ray.sight(), precision, (part, ray.origin_error()))
+        let as_given = || shape.certify_part(ray.sight(), precision);
+        let (Some(start), Some(proven)) = (ray.leaves(), shape.proven()) else { return as_given() };
+        let (error, part) = (ray.origin_error(), (start.object == object).then_some(start.part));
+        let near = certify::first_part_from(proven, ray.sight(), precision, (part, error));
+        match near.0 {
+            Enclosure::Edge(_) | Enclosure::Doubtful(_) if part.is_none() => {}
+            _ => return near,
+        }
+        // The start may lie on this shape, too, as on the other parts of a solid. The ray as it is given decides.
+        match as_given() {
+            (Enclosure::Hits(at), part) => {
+                let moved = moved(proven, ray.sight(), (part, error), at);
+                moved.map_or(near, |at| (Enclosure::Hits(at.into()), part))
             }
-            _ => shape.certify_part(ray.sight(), precision),
+            given => given,
         }
     }
 
     /// Returns narrow bounds of a hit of a part that 53 bits prove, given their bounds. Whole numbers, which also decide
     /// what 237 bits leave open, take several times as long as these, except for the faces of a mesh.
     fn narrowed(&self, ray: &QueryRay, object: usize, part: usize, within: Wide) -> (Enclosure, usize) {
-        let newton = self.shape(object).proven().and_then(|proven| newton(proven, ray.sight(), part, within));
-        if let Some(at) = newton {
+        let proven = self.shape(object).proven();
+        // The start of a ray that leaves a surface is known to within an error, which no digits make smaller.
+        if let Some(proven) = proven.filter(|_| ray.leaves().is_none())
+            && let Some(at) = newton(proven, ray.sight(), part, within)
+        {
             return (Enclosure::Hits(at), part);
         }
         let is_quick = |proven: &&dyn ProofMethods| {
             ray.leaves().is_none() && HitProofs::<f64>::face_of(*proven, part).is_none()
         };
-        let proven = self.shape(object).proven().filter(is_quick);
-        match proven.map(|proven| certify::first_part(proven, ray.sight(), Precision::Octuple)) {
+        match proven
+            .filter(is_quick)
+            .map(|proven| certify::first_part(proven, ray.sight(), Precision::Octuple))
+        {
             Some(found @ (Enclosure::Hits(_), _)) => found,
             _ => self.certify(ray, object, Precision::Octuple),
         }
@@ -136,6 +151,9 @@ impl<'m> Query<'m> {
 /// The width up to which one step of Newton's method has narrowed bounds enough, as a fraction of the distance.
 const NARROW: f64 = f64::EPSILON / 16.0;
 
+/// The number of times that the bounds of a root are widened until they hold it for all origins.
+const WIDENINGS: usize = 8;
+
 /// Narrows the bounds of a root by one step of Newton's method for intervals, if the equation has a slope between them. The
 /// slope needs 53 bits, and the value at the middle more.
 fn newton(proven: &dyn ProofMethods, sight: &Sight, part: usize, within: Wide) -> Option<Wide> {
@@ -152,6 +170,33 @@ fn newton(proven: &dyn ProofMethods, sight: &Sight, part: usize, within: Wide) -
     let narrow = Wide { low: Float::max(low, within.low), high: Float::min(high, within.high) };
     let is_narrow = narrow.low <= narrow.high && narrow.width().to_f64() <= NARROW * narrow.low.to_f64();
     is_narrow.then_some(narrow)
+}
+
+/// Encloses the only root near a ray's root for each ray that starts at most an error, in world units along each axis, from
+/// its origin, by Newton's method for intervals; `None` where there may be several.
+fn moved(
+    proven: &dyn ProofMethods,
+    sight: &Sight,
+    (part, error): (usize, f64),
+    root: Wide,
+) -> Option<Interval> {
+    let line = certify::line_from::<f64>(sight, error);
+    let slope = |t: Dual<Interval>| HitProofs::<f64>::slope(proven, line.along(t), part);
+    let (mut within, mut margin) = (root.coarse(), error / sight.ray().dir.abs().max_element());
+    for _ in 0..WIDENINGS {
+        margin = 4.0 * (margin + within.width());
+        let bounds = Interval { low: within.low - margin, high: within.high + margin };
+        let rise = slope(Dual::variable(bounds)).slope;
+        if rise.has_zero() || !rise.is_bounded() {
+            return None;
+        }
+        let middle = Interval::point(bounds.middle());
+        within = middle - slope(Dual::fixed(middle)).value / rise;
+        if bounds.low <= within.low && within.high <= bounds.high {
+            return Some(within);
+        }
+    }
+    None
 }
 
 impl Query<'_> {

@@ -133,47 +133,44 @@ fn first_hit_of(shape: &dyn AnyNumber, sight: &Sight, precision: Precision) -> E
 
 /// Returns what is proven about a ray's first hit of a shape, and the part that is hit.
 pub fn first_part(shape: &dyn ProofMethods, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-    part_of(shape, sight, precision, None)
+    first_part_from(shape, sight, precision, (None, 0.0))
 }
 
-/// Returns what is proven about a ray's first hit of a shape, and the part that is hit, for a ray that starts on a part of
-/// this shape: at a point of that part that is at most `error` world units along each axis from the origin of the sight.
+/// Returns what is proven about the first hit of a shape, and the part that is hit, by each ray that starts at most `error`
+/// world units along each axis from the origin of the sight; of those that start on a part of this shape, if one is given.
 /// That start is no hit.
 pub fn first_part_from(
     shape: &dyn ProofMethods,
     sight: &Sight,
     precision: Precision,
-    (part, error): (usize, f64),
-) -> (Enclosure, usize) {
-    part_of(shape, sight, precision, Some((part, error)))
-}
-
-fn part_of(
-    shape: &dyn ProofMethods,
-    sight: &Sight,
-    precision: Precision,
-    start: Option<(usize, f64)>,
+    (part, error): (Option<usize>, f64),
 ) -> (Enclosure, usize) {
     fn found<F: Precise>(
         shape: &dyn ProofMethods,
         sight: &Sight,
-        start: Option<(usize, f64)>,
+        (part, error): (Option<usize>, f64),
     ) -> (Enclosure, usize)
     where
         Enclosure: From<HitEnclosure<F>>,
     {
-        let mut line = sight.line::<Interval<F>>();
-        if let Some((_, error)) = start {
-            let off = Interval::<F>::point(F::of(error));
-            line.origin = line.origin.map(|at| Interval { low: (at - off).low, high: (at + off).high });
-        }
-        let (found, part) = F::proofs(shape).first_hit(&line, start.map(|(part, _)| part));
+        let (found, part) = F::proofs(shape).first_hit(&line_from(sight, error), part);
         (found.into(), part)
     }
     match precision {
-        Precision::Double => found::<f64>(shape, sight, start),
-        Precision::Octuple => found::<Fraction>(shape, sight, start),
+        Precision::Double => found::<f64>(shape, sight, (part, error)),
+        Precision::Octuple => found::<Fraction>(shape, sight, (part, error)),
     }
+}
+
+/// Returns the line of each ray that starts at most `error` world units along each axis from the origin of a sight.
+pub fn line_from<F: Float>(sight: &Sight, error: f64) -> Line<Interval<F>> {
+    let line = sight.line::<Interval<F>>();
+    if error == 0.0 {
+        return line;
+    }
+    let off = Interval::<F>::point(F::of(error));
+    let origin = line.origin.map(|at| Interval { low: (at - off).low, high: (at + off).high });
+    Line { origin, ..line }
 }
 
 /// Returns what a bounding box says about a line's first hit of a shape without an equation: nothing nearer than the
