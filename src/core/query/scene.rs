@@ -166,7 +166,8 @@ fn newton(proven: &dyn ProofMethods, sight: &Sight, part: usize, within: Wide) -
     let middle = Wide::point(within.middle());
     let value =
         HitProofs::<Fraction>::slope(proven, sight.line::<Wide>().along(Dual::fixed(middle)), part).value;
-    let Wide { low, high } = middle - value / Wide::from_f64(slope);
+    // A quotient of the value would be a fraction, which takes a division each time that it is used.
+    let Wide { low, high } = middle - value * Wide::from_f64(Interval::point(1.0) / slope);
     let narrow = Wide { low: Float::max(low, within.low), high: Float::min(high, within.high) };
     let is_narrow = narrow.low <= narrow.high && narrow.width().to_f64() <= NARROW * narrow.low.to_f64();
     is_narrow.then_some(narrow)
