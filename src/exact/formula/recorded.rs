@@ -122,6 +122,17 @@ impl Neg for Recorder {
     }
 }
 
+/// Implements functions of a number, and of more of them, by calls of a formula's functions.
+macro_rules! calls {
+    ($($function:ident($($more:ident),*) $Function:ident,)*) => {
+        $(
+            fn $function(self $(, $more: Self)*) -> Self {
+                Self::call(Function::$Function, [self $(, $more)*])
+            }
+        )*
+    };
+}
+
 /// The bounds are infinite: a function that asks for them takes the way that it takes where nothing is known.
 impl Scalar for Recorder {
     fn constant(value: f64) -> Self {
@@ -136,52 +147,9 @@ impl Scalar for Recorder {
         (self.sin(), self.cos())
     }
 
-    fn sin(self) -> Self {
-        Self::call(Function::Sin, [self])
-    }
-
-    fn cos(self) -> Self {
-        Self::call(Function::Cos, [self])
-    }
-
-    fn tan(self) -> Self {
-        Self::call(Function::Tan, [self])
-    }
-
-    fn exp(self) -> Self {
-        Self::call(Function::Exp, [self])
-    }
-
-    fn ln(self) -> Self {
-        Self::call(Function::Ln, [self])
-    }
-
-    fn atan2(self, x: Self) -> Self {
-        Self::call(Function::Atan2, [self, x])
-    }
-
-    fn sqrt(self) -> Self {
-        Self::call(Function::Sqrt, [self])
-    }
-
-    fn abs(self) -> Self {
-        Self::call(Function::Abs, [self])
-    }
-
-    fn floor(self) -> Self {
-        Self::call(Function::Floor, [self])
-    }
-
-    fn min(self, other: Self) -> Self {
-        Self::call(Function::Min, [self, other])
-    }
-
-    fn max(self, other: Self) -> Self {
-        Self::call(Function::Max, [self, other])
-    }
-
-    fn pow(self, exponent: Self) -> Self {
-        Self::call(Function::Pow, [self, exponent])
+    calls! {
+        sin() Sin, cos() Cos, tan() Tan, exp() Exp, ln() Ln, sqrt() Sqrt, abs() Abs, floor() Floor, step() Heaviside,
+        atan2(x) Atan2, min(other) Min, max(other) Max, pow(exponent) Pow, choose(one, other) If,
     }
 
     fn powi(self, exponent: i32) -> Self {
@@ -206,14 +174,6 @@ impl Scalar for Recorder {
 
     fn noise(at: [Self; 3], orders: [u8; 3]) -> Self {
         if orders == [0; 3] { Self::call(Function::Noise, at) } else { Self::unknown() }
-    }
-
-    fn step(self) -> Self {
-        Self::call(Function::Heaviside, [self])
-    }
-
-    fn choose(self, one: Self, other: Self) -> Self {
-        Self::call(Function::If, [self, one, other])
     }
 
     fn d_step(self) -> Self {

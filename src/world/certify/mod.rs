@@ -120,7 +120,7 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
     first_hit_of(shape, sight, precision)
 }
 
-/// The same for a `dyn`, to compile it only once.
+/// Returns the result of [`first_hit`]. It takes a `dyn`, to be compiled once and not for each shape.
 fn first_hit_of(shape: &dyn AnyNumber, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
         Precision::Double => f64::along(shape, &sight.line(), false).into(),
