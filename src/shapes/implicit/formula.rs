@@ -16,6 +16,8 @@ pub trait Implicit: Send + Sync {
     const IS_IN_WIDE_BOX: bool = false;
 
     /// Returns the value of the formula at a point: negative inside the shape, positive outside, and 0 on the surface.
+    /// Proofs call it once, with numbers that record the operations: their bounds are infinite, and a branch that depends on
+    /// bounds is taken as where nothing is known.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
     /// Returns the value of a polynomial with the same sign as the formula everywhere. A polynomial of degree 40 or
