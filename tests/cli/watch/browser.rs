@@ -68,7 +68,8 @@ impl Browser {
         self.post("/goog/cdp/execute", json!({ "cmd": name, "params": params }));
     }
 
-    /// Shows the page as on a screen of this size in pixels, touched by fingers if so, in light or dark colours.
+    /// Shows the page as on a screen of this size in pixels, touched by fingers if so, in light or dark colours, and
+    /// waits until the image fits in its width: what a touch aims at lies elsewhere before.
     pub fn emulate(&self, [width, height]: [u32; 2], has_fingers: bool, scheme: &str) {
         let screen =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": has_fingers });
@@ -76,6 +77,9 @@ impl Browser {
         self.command("Emulation.setTouchEmulationEnabled", json!({ "enabled": has_fingers }));
         let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
         self.command("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
+        self.wait(&format!(
+            "innerWidth === {width} && document.querySelector('canvas').getBoundingClientRect().right < {width}"
+        ));
     }
 
     /// Puts fingers on the screen, each at the first of its places, moves them to the others and lifts them.

@@ -139,7 +139,6 @@ fn what_fingers_touch_is_large_and_a_slider_follows_them() {
 fn two_fingers_zoom_the_sheet_or_take_the_camera_nearer() {
     let Some((watching, browser)) = opened(LOOK_AT) else { return };
     browser.emulate(PHONE, true, "dark");
-    browser.wait("document.querySelector('canvas').getBoundingClientRect().right < 390");
     let spread = |browser: &Browser| {
         let [left, middle_left, far_left, right, middle_right, far_right] =
             around_middle(browser, [[-20, 0], [-40, 0], [-60, 0], [20, 0], [40, 0], [60, 0]]);
