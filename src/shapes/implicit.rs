@@ -15,12 +15,13 @@ pub use formula::{CUT_BY_BOX, Implicit};
 use glam::{DVec2, DVec3};
 use on_ray::{FormulaOnRay, ImplicitShape, shortest};
 use parts::Parts;
+use std::sync::OnceLock;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::along::AlongLines;
 use tabray_exact::formula::field::Field;
-use tabray_exact::formula::nodes::Nodes;
 use tabray_exact::gradient::Gradient;
 use tabray_exact::interval::Interval;
-use tabray_exact::polynomial::{Coefficient, MAX_COEFFICIENTS, Polynomial};
+use tabray_exact::polynomial::{MAX_COEFFICIENTS, Polynomial};
 use tabray_exact::roots::Method;
 use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot};
@@ -50,13 +51,19 @@ pub(super) fn body(formula: impl Implicit + 'static, frame: Frame) -> Body {
     let given = Aabb { low, high };
     let Aabb { low, high } = if formula.is_box_exact() { given } else { given.with_slack(0.0) };
     let diagonal = Polynomial::<f64, MAX_COEFFICIENTS>::along(Interval { low: -1.0, high: 1.0 });
-    let degree = formula.along([diagonal; 3]).degree();
+    let own = match formula.field() {
+        Some(_) => None,
+        None => AlongLines::recorded(|at| formula.polynomial(at)),
+    };
+    let along_lines = formula.field().map(Field::along_lines).or(own.as_ref());
+    let degree = along_lines.and_then(|along| along.polynomial([diagonal; 3]).degree());
     let ends = [low.to_array(), high.to_array()];
-    let nodes = formula.field().zip(degree).and_then(|(field, degree)| Nodes::new(field, degree, ends));
+    let nodes = along_lines.zip(degree).and_then(|(along, degree)| along.nodes(degree, ends));
     let cost = formula.field().map_or(1, |field| field.formula().cost());
     let (parts, most_pieces) = (Parts::new(low, high, cost), on_ray::most_pieces(cost));
-    let recorded = Default::default();
-    let shape = ImplicitShape { formula, recorded, degree, frame, low, high, parts, most_pieces, nodes };
+    let (recorded, along_lines) = (OnceLock::new(), own);
+    let shape =
+        ImplicitShape { formula, recorded, along_lines, degree, frame, low, high, parts, most_pieces, nodes };
     Body::plain(Shape::new(shape).bracketed().searched())
 }
 
@@ -183,15 +190,8 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
         }
     }
 
-    fn is_polynomial(&self) -> bool {
-        self.degree.is_some()
-    }
-
-    fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
-        match self.formula.field() {
-            Some(field) => field.along(at),
-            None => self.polynomial().along(at),
-        }
+    fn polynomial(&self) -> Option<&AlongLines> {
+        self.polynomial()
     }
 
     fn field(&self) -> Option<&Field> {

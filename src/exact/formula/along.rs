@@ -1,19 +1,48 @@
-//! Formulas along lines, as polynomials. Operations work in place, because copying a polynomial for each would be slow.
+//! Formulas along lines, as polynomials: rounded, by their values at nodes, or exact.
 
+use super::nodes::Nodes;
 use super::program::{MAX_REGISTERS, Program, Value, Values};
+use super::rational::{self, Rational};
+use super::recorded::{self, Recorder};
 use super::step::Step;
+use super::variables::SPACE;
 use crate::polynomial::{Coefficient, Polynomial};
+use crate::roots::whole::Whole;
 use crate::scalar::Scalar;
 
-impl Program {
-    /// Evaluates operations at a point with polynomials as coordinates.
-    pub(super) fn along<C: Coefficient, const N: usize>(
-        &self,
-        at: [Polynomial<C, N>; 3],
-    ) -> Polynomial<C, N> {
-        let mut registers = Vec::with_capacity(self.registers.max(at.len()));
+/// A formula in x, y and z along lines. Powers are products.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlongLines(pub(super) Program);
+
+impl AlongLines {
+    /// Records a function. Returns `None` if it has an operation that no formula of a scene expresses, or is too long.
+    pub fn recorded(function: impl FnOnce([Recorder; 3]) -> Recorder) -> Option<Self> {
+        let (values, _) = recorded::values(function);
+        let is_known = |value: &Value| match value.step {
+            Step::Number(number) | Step::Scale(number) | Step::Shift(number) => number.is_finite(),
+            step => step != Step::Spline,
+        };
+        let program = by_products(&values, SPACE.len(), Products::All);
+        program.filter(|_| values.list.iter().all(is_known)).map(Self)
+    }
+
+    /// Returns the values at nodes of lines in a box of a polynomial of this degree; see [`Nodes::new`].
+    pub fn nodes(&self, degree: usize, corners: [[f64; 3]; 2]) -> Option<Nodes> {
+        Nodes::new(&self.0, degree, corners)
+    }
+
+    /// Returns the formula along the points `origin + t dir`, times a positive number. Returns `None` if it is not a
+    /// polynomial of t with a degree that a [`Polynomial`] may have.
+    pub fn exactly(&self, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
+        rational::whole(&self.0, origin, dir)
+    }
+
+    /// Evaluates the formula at a point with polynomials as coordinates. Operations work in place, because copying a
+    /// polynomial for each would be slow.
+    pub fn polynomial<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
+        let mut registers = Vec::with_capacity(self.0.registers.max(at.len()));
         registers.extend_from_slice(&at);
-        for instruction in &self.instructions {
+        for instruction in &self.0.instructions {
             let (a, b) = (usize::from(instruction.operands[0]), usize::from(instruction.operands[1]));
             let result = usize::from(instruction.result);
             if result == registers.len() {
@@ -33,7 +62,7 @@ impl Program {
                 }
             }
         }
-        registers[usize::from(self.result)]
+        registers[usize::from(self.0.result)]
     }
 }
 
@@ -62,8 +91,7 @@ pub(super) enum Products {
 }
 
 /// Returns a program in which powers are products, or `None` if it needs too many registers.
-pub(super) fn by_products(steps: &[Step], variables: usize, which: Products) -> Option<Program> {
-    let given = Values::new(steps, variables);
+pub(super) fn by_products(given: &Values, variables: usize, which: Products) -> Option<Program> {
     let mut new = Powers { list: given.list[..variables].to_vec(), known: Vec::new() };
     let mut places: Vec<usize> = (0..variables).collect();
     for value in &given.list[variables..] {
@@ -126,5 +154,44 @@ impl Powers {
 
     fn find(&self, of: usize, exponent: u32) -> Option<usize> {
         self.known.iter().find(|power| (power.0, power.1) == (of, exponent)).map(|power| power.2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::tests::field;
+    use crate::interval::Interval;
+    use crate::polynomial::MAX_COEFFICIENTS;
+    use crate::spline::Spline;
+
+    const ORIGIN: [f64; 3] = [0.25, 0.0, 1.5];
+    const DIR: [f64; 3] = [0.5, -2.0, 1.0];
+
+    #[test]
+    fn a_function_is_the_polynomial_of_its_formula() {
+        let recorded = AlongLines::recorded(|[x, y, z]| {
+            (x.powi(2) + y.powi(4) - Recorder::constant(1.0)).powi(3) - x * y * z.powi(5).scaled(3.0)
+        });
+        let field = field("(x^2 + y^4 - 1)^3 - x*y*z^5*3");
+        let both = [&recorded.expect("a polynomial"), field.along_lines()];
+        let t = Polynomial::<f64, MAX_COEFFICIENTS>::along(Interval { low: -1.0, high: 1.0 });
+        let at = [0, 1, 2].map(|axis| t.scaled(DIR[axis]).shifted(ORIGIN[axis]));
+        let [recorded, written] = both.map(|of| of.polynomial(at));
+        assert_eq!((recorded.degree(), written.degree()), (Some(12), Some(12)));
+        for (one, other) in recorded.coefficients().iter().zip(written.coefficients()) {
+            assert!((one - other).abs() <= 1e-12 * other.abs(), "{one} is not {other}");
+        }
+        let [origin, dir] = [ORIGIN, DIR].map(|of| of.map(Rational::from));
+        let [recorded, written] = both.map(|of| of.exactly(&origin, &dir).expect("a polynomial"));
+        assert_eq!(recorded.coefficients(), written.coefficients());
+    }
+
+    #[test]
+    fn what_no_formula_expresses_is_not_recorded() {
+        let spline = Spline::new(&[[0.0, 0.5], [1.0, 1.0], [2.0, 0.0]]);
+        assert_eq!(AlongLines::recorded(|[x, y, _]| x + y.spline(&spline, 0)), None);
+        assert_eq!(AlongLines::recorded(|[x, ..]| x + Recorder::about(1.0, 0.1)), None);
+        assert_eq!(AlongLines::recorded(|[x, ..]| x.scaled(f64::INFINITY)), None);
     }
 }

@@ -44,7 +44,7 @@ impl Field {
     /// Tells whether the formula is a polynomial, with a degree within the limit for polynomials along a line.
     pub fn is_polynomial(&self) -> bool {
         let [origin, dir] = LINES[0].map(|of| of.map(Rational::from));
-        self.exactly_along(&origin, &dir).is_some()
+        self.along_lines().exactly(&origin, &dir).is_some()
     }
 
     /// Tells whether the formula is a polynomial with a repeated factor, by three lines. They detect each factor,
@@ -52,7 +52,7 @@ impl Field {
     /// does so.
     pub fn has_repeated_factor(&self) -> bool {
         LINES.iter().all(|[origin, dir]| {
-            let along = self.exactly_along(&origin.map(Rational::from), &dir.map(Rational::from));
+            let along = self.along_lines().exactly(&origin.map(Rational::from), &dir.map(Rational::from));
             along.is_some_and(|along| along.degree() > 1 && !along.has_no_repeated_factor())
         })
     }

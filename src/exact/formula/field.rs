@@ -1,14 +1,13 @@
 //! Formulas in x, y and z, or in all known quantities at a point of a surface.
 
-use super::along::{Products, by_products};
+use super::along::{AlongLines, Products, by_products};
 use super::cells::{Cells, is_choice};
-use super::program::{MAX_REGISTERS, Program};
+use super::program::{MAX_REGISTERS, Program, Values};
 use super::step::{Function, Step, fold};
 use super::variables::{CURVE, PATCH, SPACE, SURFACE};
 use super::{FEW_REGISTERS, Formula};
 use crate::f64x8::F64x8;
 use crate::interval::Interval;
-use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 use std::sync::Arc;
 
@@ -47,8 +46,8 @@ pub struct FieldOf<const N: usize> {
     poles: Option<Arc<Self>>,
     /// The same formula with fewer operations.
     quick: Formula,
-    /// The operations with products for powers, for polynomials along lines.
-    products: Option<Program>,
+    /// The formula along lines.
+    along_lines: AlongLines,
     /// The cells of a box, each with its own program.
     cells: Option<Arc<Cells>>,
 }
@@ -73,9 +72,9 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         if of_surface {
             quick = new(with_roots(&quick.steps));
         }
-        let of_space =
-            |which| if COUNT == SPACE.len() { by_products(&quick.steps, COUNT, which) } else { None };
-        let products = of_space(Products::All);
+        let values = (COUNT == SPACE.len()).then(|| Values::new(&quick.steps, COUNT));
+        let of_space = |which| by_products(values.as_ref()?, COUNT, which);
+        let along_lines = AlongLines(of_space(Products::All).unwrap_or_else(|| quick.program.clone()));
         if let Some(program) = of_space(Products::OfSquares) {
             quick.program = program;
         }
@@ -89,7 +88,7 @@ impl<const COUNT: usize> FieldOf<COUNT> {
             keeps_signs: true,
             poles: None,
             quick,
-            products,
+            along_lines,
             cells: None,
         })
     }
@@ -163,11 +162,6 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         &self.quick.program
     }
 
-    /// Returns the operations, with products for powers.
-    pub(super) fn by_products(&self) -> &Program {
-        self.products.as_ref().unwrap_or(self.program())
-    }
-
     /// Evaluates the formula as read at eight points, rounded to nearest.
     pub fn as_written_at(&self, at: [F64x8; COUNT]) -> F64x8 {
         let of = &*self.written;
@@ -217,6 +211,11 @@ impl Field {
         let is_cut = self.program().instructions.len() >= MANY && steps.iter().any(|step| is_choice(*step));
         let cells = is_cut.then(|| Cells::new(&Program::new(steps, 3), corners)).flatten();
         Self { cells: cells.map(Arc::new), ..self }
+    }
+
+    /// Returns the formula along lines.
+    pub fn along_lines(&self) -> &AlongLines {
+        &self.along_lines
     }
 
     /// Returns the cells, if any.
@@ -316,13 +315,6 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
         out.push(*step);
     }
     out
-}
-
-impl Field {
-    /// Evaluates the formula at a point with polynomials as coordinates.
-    pub fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
-        self.by_products().along(at)
-    }
 }
 
 /// Returns the bounds of a point's coordinates.

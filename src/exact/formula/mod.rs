@@ -1,6 +1,6 @@
 //! Formulas of scenes and profile plugins: in y, such as `2 + sin(y)`, or in x, y and z.
 
-mod along;
+pub mod along;
 pub mod cells;
 mod condition;
 mod domain;

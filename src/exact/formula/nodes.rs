@@ -1,6 +1,5 @@
 //! A polynomial along a line from its values at nodes of the line, which is faster than operations on the coefficients.
 
-use super::field::Field;
 use super::program::{Instruction, Program};
 use super::step::Step;
 use crate::double_double::DoubleDouble;
@@ -34,6 +33,7 @@ const AROUND: f64 = 1.0 / 1024.0;
 
 /// The evaluation of a formula along lines in a box.
 pub struct Nodes {
+    program: Program,
     degree: usize,
     /// The nodes, from -1 to 1.
     places: Vec<f64>,
@@ -65,13 +65,13 @@ pub struct NearLine {
 impl Nodes {
     /// Prepares a formula that is a polynomial of this degree along lines in a box. Returns `None` if it is not, or if
     /// it is too long.
-    pub fn new(field: &Field, degree: usize, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
+    pub(super) fn new(program: &Program, degree: usize, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
         let within = per_axis(|axis| {
             let slack = AROUND * (high[axis] - low[axis]);
             Interval { low: low[axis] - slack, high: high[axis] + slack }
         });
         let size = within.iter().fold(0.0, |size: f64, side| size.max(side.magnitude()));
-        let (program, most_off) = (field.by_products(), MAX_ERROR * size);
+        let most_off = MAX_ERROR * size;
         if program.registers > MAX_REGISTERS || degree > MAX_DEGREE {
             return None;
         }
@@ -86,30 +86,23 @@ impl Nodes {
         let sum = |of: usize| weights.iter().map(|weights| weights[of].abs()).sum::<f64>();
         let norm = (0..count).map(sum).fold(0.0, f64::max);
         let error = [exact, ROUNDED_UP * grows.max(0.0)];
-        Some(Self { degree, places, weights, norm, error, most_off, size })
+        Some(Self { program: program.clone(), degree, places, weights, norm, error, most_off, size })
     }
 
     /// Returns the formula on a piece of a line in the box, or `None` if its error is unknown.
-    pub fn form<const N: usize>(
-        &self,
-        field: &Field,
-        line: &NearLine,
-        piece: Interval,
-    ) -> Option<Bernstein<f64, N>> {
-        let program = field.by_products();
+    pub fn form<const N: usize>(&self, line: &NearLine, piece: Interval) -> Option<Bernstein<f64, N>> {
         match self.places.len() {
-            0..=4 => self.form_by::<N, 4>(program, line, piece),
-            5..=6 => self.form_by::<N, 6>(program, line, piece),
-            7..=8 => self.form_by::<N, 8>(program, line, piece),
-            9..=10 => self.form_by::<N, 10>(program, line, piece),
-            11..=14 => self.form_by::<N, 14>(program, line, piece),
-            _ => self.form_by::<N, { MAX_DEGREE + 2 }>(program, line, piece),
+            0..=4 => self.form_by::<N, 4>(line, piece),
+            5..=6 => self.form_by::<N, 6>(line, piece),
+            7..=8 => self.form_by::<N, 8>(line, piece),
+            9..=10 => self.form_by::<N, 10>(line, piece),
+            11..=14 => self.form_by::<N, 14>(line, piece),
+            _ => self.form_by::<N, { MAX_DEGREE + 2 }>(line, piece),
         }
     }
 
     fn form_by<const N: usize, const LANES: usize>(
         &self,
-        program: &Program,
         &NearLine { base, dir, blur, turn }: &NearLine,
         piece: Interval,
     ) -> Option<Bernstein<f64, N>> {
@@ -128,9 +121,9 @@ impl Nodes {
                 at[axis][lane] = base[axis] + t * dir[axis];
             }
         }
-        let values = match program.registers {
-            ..=FEW_REGISTERS => run::<LANES, FEW_REGISTERS>(program, at),
-            _ => run::<LANES, MAX_REGISTERS>(program, at),
+        let values = match self.program.registers {
+            ..=FEW_REGISTERS => run::<LANES, FEW_REGISTERS>(&self.program, at),
+            _ => run::<LANES, MAX_REGISTERS>(&self.program, at),
         };
         let (mut coefficients, mut largest) = ([0.0; N], 0.0_f64);
         for (value, weights) in values.iter().zip(&self.weights) {
@@ -255,7 +248,8 @@ mod tests {
             ("(x^4 - 2*y^3 + z)^4 - 3*x^7*y^9", 16),
         ] {
             let field = field(text);
-            let nodes = Nodes::new(&field, degree, corners).expect(text);
+            let along_lines = field.along_lines();
+            let nodes = along_lines.nodes(degree, corners).expect(text);
             for step in 0..40 {
                 let number = |by: usize| ((step * by) % 97) as f64 / 97.0 - 0.5;
                 let line = NearLine {
@@ -265,12 +259,12 @@ mod tests {
                     turn: 1e-15,
                 };
                 let piece = Interval { low: -0.8 + 0.2 * number(5), high: 0.9 };
-                let form = nodes.form::<MAX_COEFFICIENTS>(&field, &line, piece).expect(text);
+                let form = nodes.form::<MAX_COEFFICIENTS>(&line, piece).expect(text);
                 let along = Polynomial::<DoubleDouble, MAX_COEFFICIENTS>::along(piece);
                 let place = |axis: usize| {
                     Polynomial::constant(line.base[axis]) + Polynomial::constant(line.dir[axis]) * along
                 };
-                let exact = Bernstein::of(&field.along(per_axis(place))).expect(text);
+                let exact = Bernstein::of(&along_lines.polynomial(per_axis(place))).expect(text);
                 let pairs = form.coefficients().iter().zip(exact.coefficients());
                 let off = pairs.map(|(one, other)| (*one - other.high).abs()).fold(0.0, f64::max);
                 assert!(off <= form.error(), "{text}: {off:e} {:e}", form.error());
@@ -283,7 +277,7 @@ mod tests {
     #[test]
     fn what_is_no_polynomial_has_no_nodes() {
         for text in ["sin(x)", "x/y", "sqrt(x^2)", "x^-1 + y", "1e300*x^20*1e300"] {
-            assert!(Nodes::new(&field(text), 3, [[-1.5; 3], [1.5; 3]]).is_none(), "{text}");
+            assert!(field(text).along_lines().nodes(3, [[-1.5; 3], [1.5; 3]]).is_none(), "{text}");
         }
     }
 }

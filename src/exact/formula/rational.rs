@@ -3,7 +3,6 @@
 //! The numbers of a formula are `f64`, and therefore fractions. A formula of sums, differences, products, and quotients
 //! by numbers is a polynomial along a line. Its coefficients are fractions if the line's are.
 
-use super::field::Field;
 use super::program::Program;
 use super::step::Step;
 use crate::interval::Fraction;
@@ -138,21 +137,10 @@ impl Rational {
     }
 }
 
-impl Field {
-    /// Returns the formula along the points `origin + t dir`, times a positive number. Returns `None` if it is not a
-    /// polynomial of t with a degree that a [`Polynomial`](crate::polynomial::Polynomial) may have.
-    pub fn exactly_along(&self, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
-        let place = |axis: usize| origin[axis].with_slope(&dir[axis]);
-        let Rational { mut numerators, .. } = run(self.program(), [place(0)?, place(1)?, place(2)?])?;
-        // A common power of two would only make coefficients longer.
-        let zeros = numerators.iter().filter_map(|of| of.trailing_zeros()).min().unwrap_or(0);
-        numerators.iter_mut().for_each(|of| *of >>= zeros);
-        Some(Whole::new(numerators))
-    }
-}
-
-fn run(program: &Program, at: [Rational; 3]) -> Option<Rational> {
-    program.fold(at, |step, [a, b, _]| {
+/// See [`AlongLines::exactly`](super::along::AlongLines::exactly).
+pub(super) fn whole(program: &Program, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
+    let place = |axis: usize| origin[axis].with_slope(&dir[axis]);
+    let along = program.fold([place(0)?, place(1)?, place(2)?], |step, [a, b, _]| {
         Some(match step {
             Step::Variable(_) => a.clone(),
             Step::Number(number) => Rational::from(number),
@@ -167,5 +155,10 @@ fn run(program: &Program, at: [Rational; 3]) -> Option<Rational> {
             Step::Shift(by) => a.plus(&Rational::from(by))?,
             Step::Spline | Step::Call(_) => return None,
         })
-    })
+    });
+    let Rational { mut numerators, .. } = along?;
+    // A common power of two would only make coefficients longer.
+    let zeros = numerators.iter().filter_map(|of| of.trailing_zeros()).min().unwrap_or(0);
+    numerators.iter_mut().for_each(|of| *of >>= zeros);
+    Some(Whole::new(numerators))
 }

@@ -5,12 +5,12 @@
 
 use super::Formula;
 use super::program::{Program, Value, Values};
-use super::step::{Function, Step};
+use super::step::{Function, Step, StepKey};
 use super::variables::SPACE;
-use crate::polynomial::{Coefficient, Polynomial};
 use crate::scalar::Scalar;
 use crate::spline::Spline;
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
@@ -18,13 +18,15 @@ use std::sync::Arc;
 const MOST: usize = 1 << u8::BITS;
 
 thread_local! {
-    static RECORDING: RefCell<Recording> = const { RefCell::new(Recording { list: Vec::new(), spline: None }) };
+    static RECORDING: RefCell<Recording> = RefCell::default();
 }
 
 /// The operations so far.
 #[derive(Default)]
 struct Recording {
     list: Vec<Value>,
+    /// The places of the operations in this list.
+    known: HashMap<(StepKey, [usize; 3]), usize>,
     spline: Option<Arc<Spline>>,
 }
 
@@ -39,9 +41,8 @@ impl Recorder {
         operands.iter_mut().zip(of).for_each(|(operand, Self(place))| *operand = place);
         let value = Value { step, operands };
         RECORDING.with_borrow_mut(|recording| {
-            let list = &mut recording.list;
-            let known = list.iter().position(|known| known.key() == value.key());
-            Self(known.unwrap_or_else(|| {
+            let Recording { list, known, .. } = recording;
+            Self(*known.entry(value.key()).or_insert_with(|| {
                 list.push(value);
                 list.len() - 1
             }))
@@ -65,9 +66,10 @@ pub struct Recorded(Formula);
 impl Recorded {
     /// Records a function.
     pub fn of(function: impl FnOnce([Recorder; 3]) -> Recorder) -> Self {
-        let (mut program, spline) = recorded(function);
+        let (values, spline) = values(function);
+        let mut program = Program::of(&values, SPACE.len());
         if program.registers > MOST {
-            (program, _) = recorded(|_| Recorder::unknown());
+            program = Program::new(&[Step::Number(f64::NAN)], SPACE.len());
         }
         let formula = Formula::new(String::new(), SPACE, vec![Step::Number(f64::NAN)]);
         Self(Formula { program, spline, is_plain: false, ..formula })
@@ -81,20 +83,15 @@ impl Recorded {
         registers.resize(program.registers, at[0]);
         self.0.run(program, &mut registers)
     }
-
-    /// Evaluates the function at a point with polynomials as coordinates.
-    pub fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
-        self.0.program.along(at)
-    }
 }
 
-/// Returns the operations of a function, and the spline that they use.
-fn recorded(function: impl FnOnce([Recorder; 3]) -> Recorder) -> (Program, Option<Arc<Spline>>) {
+/// Returns the values that a function computes, and the spline that it uses.
+pub(super) fn values(function: impl FnOnce([Recorder; 3]) -> Recorder) -> (Values, Option<Arc<Spline>>) {
     let outer = RECORDING.take();
     let at = [0, 1, 2].map(|axis| Recorder::new(Step::Variable(axis), []));
     let Recorder(result) = function(at);
-    let Recording { list, spline } = RECORDING.replace(outer);
-    (Program::of(&Values { list, result }, SPACE.len()), spline)
+    let Recording { list, spline, .. } = RECORDING.replace(outer);
+    (Values { list, result }, spline)
 }
 
 /// Implements an operator by the operation of the same name.

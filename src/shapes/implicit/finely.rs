@@ -1,6 +1,7 @@
 //! Roots of polynomials on pieces of a ray that `f64` cannot decide: in double-double arithmetic, and then exactly.
 
 use super::formula::Implicit;
+use super::on_ray::ImplicitShape;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::Interval;
@@ -10,7 +11,6 @@ use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::range::Side;
 use tabray_exact::scalar::per_axis;
 use tabray_world::certify::exact_line;
-use tabray_world::geometry::frame::Frame;
 use tabray_world::geometry::ray::Ray;
 use tabray_world::geometry::sight::{Line, Sight};
 
@@ -31,8 +31,7 @@ const BEYOND: f64 = 4.0 * f64::EPSILON;
 
 /// A formula along an exact ray.
 pub(super) struct TrueRay<'s, T> {
-    pub formula: &'s T,
-    pub frame: &'s Frame,
+    pub shape: &'s ImplicitShape<T>,
     /// The ray in world space, and the distance along it from which roots are counted, in world units.
     pub ray: &'s Ray,
     pub closest: f64,
@@ -51,16 +50,16 @@ impl<T: Implicit> TrueRay<'_, T> {
 
     fn first_root_with<const N: usize>(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let counts = |rises: bool| origin_side.is_none_or(|side| rises == (side == Side::Inside));
-        let Line { origin, dir } = self.frame.exactly(self.ray, self.closest);
+        let Line { origin, dir } = self.shape.frame.exactly(self.ray, self.closest);
         let along = Polynomial::<DoubleDouble, N>::along(piece);
-        let start = self.frame.from_origin(self.ray, self.closest).abs().max_element();
+        let start = self.shape.frame.from_origin(self.ray, self.closest).abs().max_element();
         let size = self.ray.origin.abs().max_element() + self.closest.abs() + 2.0 * start;
         let error = 4.0 * DoubleDouble::ROUNDING;
         let place = |axis: usize| {
             let origin = Polynomial::number(origin[axis], error * size);
             origin + Polynomial::number(dir[axis], error) * along
         };
-        let polynomial = self.formula.along(per_axis(place));
+        let polynomial = self.shape.polynomial()?.polynomial(per_axis(place));
         let at = |s: DoubleDouble| {
             let [low, high] = [piece.low, piece.high].map(|end| DoubleDouble::from(0.5 * end));
             ((low + high) + (high - low) * s).high
@@ -86,11 +85,11 @@ impl<T: Implicit> TrueRay<'_, T> {
     /// slope. Returns `None` if the root is farther away than a polynomial known within `hidden` allows.
     pub fn finished(&self, near: &NearRoot, hidden: f64) -> Option<f64> {
         let &NearRoot { place: near, slope, is_known } = near;
-        let exact = self.frame.exactly(self.ray, self.closest);
+        let exact = self.shape.frame.exactly(self.ray, self.closest);
         let start = DoubleDouble::from(near);
         let (mut fine, mut before, mut steep) = (start, None, slope);
         for _ in 0..STEPS {
-            let value = self.formula.polynomial(exact.at(fine));
+            let value = self.shape.formula.polynomial(exact.at(fine));
             if let Some((place, other)) = before {
                 steep = ((value - other) / (fine - place)).high;
             }
@@ -113,10 +112,10 @@ impl<T: Implicit> TrueRay<'_, T> {
         if hidden <= HIDDEN * f64::EPSILON * (self.closest + root).abs() * slope {
             return root;
         }
-        let exact = self.frame.exactly(self.ray, self.closest);
+        let exact = self.shape.frame.exactly(self.ray, self.closest);
         let mut fine = DoubleDouble::from(root);
         for _ in 0..2 {
-            let Dual { value, slope } = self.formula.value(exact.along(Dual::variable(fine)));
+            let Dual { value, slope } = self.shape.formula.value(exact.along(Dual::variable(fine)));
             let step = value / slope;
             fine = fine - step;
             // Each step about squares the error.
@@ -131,9 +130,8 @@ impl<T: Implicit> TrueRay<'_, T> {
     /// Returns the exact first root from one place to another, or `None` if the formula or the line has numbers that
     /// are not fractions.
     fn exactly(&self, low: f64, high: f64, origin_side: Option<Side>) -> Option<Option<f64>> {
-        let field = self.formula.field()?;
-        let [origin, dir] = exact_line(&self.frame.line(Sight::along(self.ray).line()))?;
-        let whole = field.exactly_along(&origin, &dir)?;
+        let [origin, dir] = exact_line(&self.shape.frame.line(Sight::along(self.ray).line()))?;
+        let whole = self.shape.polynomial()?.exactly(&origin, &dir)?;
         let beyond = BEYOND * (low.abs() + high.abs() + self.closest.abs());
         let root = whole.first_root(
             self.closest + low - beyond,

@@ -3,7 +3,6 @@
 use glam::{DVec2, DVec3};
 use tabray_exact::formula::field::Field;
 use tabray_exact::interval::Interval;
-use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
 use tabray_world::luminous::Luminous;
 
@@ -20,22 +19,14 @@ pub trait Implicit: Send + Sync {
     /// bounds is taken as where nothing is known.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
-    /// Returns the value of a polynomial with the same sign as the formula everywhere. A polynomial of degree 40 or
-    /// less isolates first hits faster. By default, this is the formula itself, which need not be a polynomial.
+    /// Returns the value of a polynomial with the same sign as the formula everywhere. It is recorded when the shape is
+    /// made, as [`value`](Self::value) is for proofs. A polynomial of degree 40 or less isolates first hits faster, and
+    /// decides those exactly that rounding leaves open. By default, this is the formula itself, which need not be a polynomial.
     fn polynomial<N: Scalar>(&self, at: [N; 3]) -> N {
         self.value(at)
     }
 
-    /// Returns the [`polynomial`](Self::polynomial) along a line.
-    fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
-        match self.field() {
-            Some(field) => field.along(at),
-            None => self.polynomial(at),
-        }
-    }
-
-    /// Returns the formula, if a scene gives it. If it is a polynomial with rational coefficients, first hits are
-    /// decided exactly.
+    /// Returns the formula, if a scene gives it.
     fn field(&self) -> Option<&Field> {
         None
     }

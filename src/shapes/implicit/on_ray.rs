@@ -8,6 +8,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::along::AlongLines;
 use tabray_exact::formula::cells::MARGIN;
 use tabray_exact::formula::field::Field;
 use tabray_exact::formula::nodes::{NearLine, Nodes};
@@ -40,10 +41,11 @@ const MAX_DRIFTING: usize = 256;
 /// A shape with hits and normals from its formula.
 pub(super) struct ImplicitShape<T> {
     pub formula: T,
-    /// The formula and its [`polynomial`](Implicit::polynomial) for proofs, once one has asked for them: proofs interpret
-    /// them, to be compiled once and not for each formula.
-    pub recorded: [OnceLock<Recorded>; 2],
-    /// The degree of the formula's [`polynomial`](Implicit::polynomial), if there is one.
+    /// The formula, once a proof has asked for it: proofs interpret it, to be compiled once and not for each formula.
+    pub recorded: OnceLock<Recorded>,
+    /// The [`polynomial`](Implicit::polynomial) of a formula that no scene gives.
+    pub along_lines: Option<AlongLines>,
+    /// The degree of that of any formula, if it is a polynomial.
     pub degree: Option<usize>,
     pub frame: Frame,
     pub low: DVec3,
@@ -51,19 +53,22 @@ pub(super) struct ImplicitShape<T> {
     pub parts: Parts,
     /// The maximum number of examined pieces on a ray.
     pub most_pieces: usize,
-    /// The evaluation of a scene's formula along lines, if it is a polynomial.
+    /// The evaluation of the polynomial along lines, unless it is too long.
     pub nodes: Option<Nodes>,
 }
 
 impl<T: Implicit> ImplicitShape<T> {
     /// Returns the formula's value as it was recorded.
     pub fn value(&self) -> &Recorded {
-        self.recorded[0].get_or_init(|| Recorded::of(|at| self.formula.value(at)))
+        self.recorded.get_or_init(|| Recorded::of(|at| self.formula.value(at)))
     }
 
-    /// Returns the formula's polynomial as it was recorded.
-    pub fn polynomial(&self) -> &Recorded {
-        self.recorded[1].get_or_init(|| Recorded::of(|at| self.formula.polynomial(at)))
+    /// Returns the formula along lines, if it is a polynomial there or has one.
+    pub fn polynomial(&self) -> Option<&AlongLines> {
+        self.degree.and_then(|_| match self.formula.field() {
+            Some(field) => Some(field.along_lines()),
+            None => self.along_lines.as_ref(),
+        })
     }
 
     /// Tells whether a root may be no hit, because the surface is cut off there or its formula is not defined.
@@ -120,8 +125,7 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
 
     /// Returns the formula along the exact ray.
     pub fn exactly(&self) -> TrueRay<'s, T> {
-        let ImplicitShape { formula, frame, .. } = self.shape;
-        TrueRay { formula, frame, ray: self.ray, closest: self.closest }
+        TrueRay { shape: self.shape, ray: self.ray, closest: self.closest }
     }
 
     /// Makes the ray stand for all rays within a drift.
@@ -270,16 +274,16 @@ impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     }
 
     fn polynomial<const N: usize>(&self, piece: Interval) -> Polynomial<f64, N> {
-        self.shape.formula.along(self.on_line(Polynomial::along(piece)))
+        let at = self.on_line(Polynomial::along(piece));
+        self.shape.polynomial().map_or_else(Polynomial::unknown, |along| along.polynomial(at))
     }
 
     fn form<const N: usize>(&self, piece: Interval) -> Option<Bernstein<f64, N>> {
-        let by_nodes = || {
-            let (nodes, field) = (self.shape.nodes.as_ref()?, self.shape.formula.field()?);
+        let by_nodes = |nodes: &Nodes| {
             let (base, dir) = (self.base.to_array(), self.dir.to_array());
-            nodes.form(field, &NearLine { base, dir, blur: self.blur, turn: self.turn }, piece)
+            nodes.form(&NearLine { base, dir, blur: self.blur, turn: self.turn }, piece)
         };
-        by_nodes().or_else(|| Bernstein::of(&self.polynomial(piece)))
+        self.shape.nodes.as_ref().and_then(by_nodes).or_else(|| Bernstein::of(&self.polynomial(piece)))
     }
 
     fn finished(&self, near: &NearRoot, hidden: f64) -> Option<f64> {

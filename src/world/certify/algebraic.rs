@@ -2,9 +2,9 @@
 //! exact.
 
 use super::check::{self, Trail};
-use super::equation::{Equation, HitEnclosure, Values, hit_at, is_kept, may_be_hit};
+use super::equation::{HitEnclosure, Values, hit_at, is_kept, may_be_hit};
 use crate::geometry::sight::{Line, Sight};
-use f256::f256;
+use tabray_exact::formula::field::Field;
 use tabray_exact::formula::rational::Rational;
 use tabray_exact::interval::{Float, Fraction, Interval, Wide};
 use tabray_exact::polynomial::{Coefficient, MAX_COEFFICIENTS, Polynomial};
@@ -12,40 +12,16 @@ use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::whole::Root;
 use tabray_exact::scalar::per_axis;
 
-/// An equation that may be a polynomial with coefficients of one type.
-pub trait Coefficients<C: Coefficient>: Values<Interval<C::End>> {
-    /// Returns the polynomial along a line; unknown for another equation.
-    fn polynomial(&self, at: [Polynomial<C, MAX_COEFFICIENTS>; 3]) -> Polynomial<C, MAX_COEFFICIENTS>;
-}
-
-impl<E: Equation, C: Coefficient> Coefficients<C> for E {
-    fn polynomial(&self, at: [Polynomial<C, MAX_COEFFICIENTS>; 3]) -> Polynomial<C, MAX_COEFFICIENTS> {
-        if self.is_polynomial() { self.along(at) } else { Polynomial::unknown() }
-    }
-}
-
-/// An equation in all numbers in which proofs are tried.
-pub trait AnyNumber: Coefficients<f64> + Coefficients<f256> {
-    /// Returns [`Equation::cost`].
-    fn cost(&self) -> usize;
-}
-
-impl<E: Equation> AnyNumber for E {
-    fn cost(&self) -> usize {
-        Equation::cost(self)
-    }
-}
-
 /// Finds the first hit with t > 0 of a line in world coordinates; `None` where the equation is no polynomial. With
 /// `leaves`, the line's true start lies on the shape, and the result is also `None` where the root at the start is
 /// not told from others.
 pub(super) fn first_hit<C: Coefficient>(
-    shape: &dyn Coefficients<C>,
+    shape: &dyn Values<Interval<C::End>>,
     line: &Line<Interval<C::End>>,
     leaves: bool,
 ) -> Option<HitEnclosure<C::End>> {
     let (line, mut trail, mut first) = (shape.to_local(*line), Trail::default(), HitEnclosure::Misses);
-    visit_hits(shape, &line, leaves, &mut trail, |hit| {
+    visit_hits::<C>(shape, &line, leaves, &mut trail, &mut |hit| {
         first = hit;
         true
     })?;
@@ -55,12 +31,12 @@ pub(super) fn first_hit<C: Coefficient>(
 
 /// Finds the hits with t > 0 in order, up to the first that is open; `None` where [`first_hit`] returns `None`.
 pub(super) fn all_hits<C: Coefficient>(
-    shape: &dyn Coefficients<C>,
+    shape: &dyn Values<Interval<C::End>>,
     line: &Line<Interval<C::End>>,
     leaves: bool,
 ) -> Option<Vec<HitEnclosure<C::End>>> {
     let (line, mut trail, mut all) = (shape.to_local(*line), Trail::default(), Vec::new());
-    visit_hits(shape, &line, leaves, &mut trail, |hit| {
+    visit_hits::<C>(shape, &line, leaves, &mut trail, &mut |hit| {
         all.push(hit);
         !matches!(hit, HitEnclosure::Hits(_))
     })?;
@@ -71,13 +47,13 @@ pub(super) fn all_hits<C: Coefficient>(
 /// Visits the hits with t > 0 of a line in the equation's coordinates, in order, until the visitor returns true; `None`
 /// where the equation is no polynomial. Notes the ends of the pieces that have no root.
 fn visit_hits<C: Coefficient>(
-    shape: &dyn Coefficients<C>,
+    shape: &dyn Values<Interval<C::End>>,
     line: &Line<Interval<C::End>>,
     leaves: bool,
     trail: &mut Trail,
-    mut visit: impl FnMut(HitEnclosure<C::End>) -> bool,
+    visit: &mut dyn FnMut(HitEnclosure<C::End>) -> bool,
 ) -> Option<()> {
-    let zero = C::End::of(0.0);
+    let (along_lines, zero) = (shape.polynomial()?, C::End::of(0.0));
     let [low, high] = shape.extent();
     let part = line.clip(low, high);
     trail.clip(part);
@@ -98,7 +74,7 @@ fn visit_hits<C: Coefficient>(
         let step = near.dir[axis] * Interval::point(half);
         Polynomial::enclosed(near.origin[axis]) + Polynomial::enclosed(step) * along
     };
-    let polynomial = shape.polynomial(per_axis(place));
+    let polynomial = along_lines.polynomial(per_axis(place));
     polynomial.degree()?;
     let interval = |[low, high]: [C; 2]| {
         let [low, high] = [low.bounds(0.0).low, high.bounds(0.0).high];
@@ -140,12 +116,12 @@ fn visit_hits<C: Coefficient>(
 /// Finds the first hit with t > 0 of a ray exactly; `None` where the equation is no polynomial, or if its coefficients
 /// or the numbers of the ray are not fractions of few enough digits.
 pub(super) fn exact_hit(shape: &dyn Values<Wide>, sight: &Sight) -> Option<HitEnclosure<Fraction>> {
-    let field = shape.field()?;
+    let along_lines = shape.polynomial()?;
     let near = shape.to_local(sight.line());
     let [origin, dir] = exact_line(&near)?;
-    let polynomial = field.exactly_along(&origin, &dir)?;
-    let poles = match field.poles() {
-        Some(poles) => Some(poles.exactly_along(&origin, &dir)?),
+    let polynomial = along_lines.exactly(&origin, &dir)?;
+    let poles = match shape.field().and_then(Field::poles) {
+        Some(poles) => Some(poles.along_lines().exactly(&origin, &dir)?),
         None => None,
     };
     let [low, high] = shape.extent();
@@ -183,34 +159,37 @@ pub fn exact_line(line: &Line<Wide>) -> Option<[[Rational; 3]; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::certify::equation::Equation;
+    use f256::f256;
     use glam::DVec3;
     use std::cell::Cell;
+    use tabray_exact::formula::along::AlongLines;
     use tabray_exact::scalar::Scalar;
 
     /// Three planes, and the number of times that their equation was evaluated.
-    struct Planes(Cell<usize>);
+    struct Planes {
+        count: Cell<usize>,
+        along_lines: AlongLines,
+    }
 
     const PLACES: [f64; 3] = [-0.5, 0.25, 0.75];
 
+    fn product<N: Scalar>([x, _, _]: [N; 3]) -> N {
+        PLACES.map(|place| x - N::constant(place)).into_iter().fold(N::constant(1.0), |all, one| all * one)
+    }
+
+    fn planes() -> Planes {
+        Planes { count: Cell::new(0), along_lines: AlongLines::recorded(product).expect("a polynomial") }
+    }
+
     impl Equation for Planes {
-        fn value<N: Scalar>(&self, [x, _, _]: [N; 3]) -> N {
-            self.0.set(self.0.get() + 1);
-            PLACES
-                .map(|place| x - N::constant(place))
-                .into_iter()
-                .fold(N::constant(1.0), |all, one| all * one)
+        fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+            self.count.update(|count| count + 1);
+            product(at)
         }
 
-        fn is_polynomial(&self) -> bool {
-            true
-        }
-
-        fn along<C: Coefficient, const N: usize>(
-            &self,
-            [x, _, _]: [Polynomial<C, N>; 3],
-        ) -> Polynomial<C, N> {
-            let factors = PLACES.map(|place| x + Polynomial::constant(-place));
-            factors[0] * factors[1] * factors[2]
+        fn polynomial(&self) -> Option<&AlongLines> {
+            Some(&self.along_lines)
         }
 
         fn extent(&self) -> [DVec3; 2] {
@@ -220,7 +199,7 @@ mod tests {
 
     #[test]
     fn a_line_that_leaves_a_root_finds_the_next_one_without_a_search() {
-        let planes = Planes(Cell::new(0));
+        let planes = planes();
         for (start, next) in PLACES.into_iter().zip([Some(0.75), Some(0.5), None]) {
             let error = Fraction::from(1e-40);
             let x = Interval { low: Fraction::from(start) - error, high: Fraction::from(start) + error };
@@ -237,7 +216,7 @@ mod tests {
                 (found, _) => panic!("{found:?} from {start}"),
             }
         }
-        assert_eq!(planes.0.get(), 0);
+        assert_eq!(planes.count.get(), 0);
     }
 
     #[test]
@@ -246,7 +225,7 @@ mod tests {
         let x = Interval { low: Fraction::from(-2.0) - error, high: Fraction::from(-2.0) + error };
         let [y, z] = [0.1, 0.2].map(Interval::constant);
         let line = Line { origin: [x, y, z], dir: [1.0, 0.0, 0.0].map(Interval::constant) };
-        let found = first_hit::<f256>(&Planes(Cell::new(0)), &line, false);
+        let found = first_hit::<f256>(&planes(), &line, false);
         let Some(HitEnclosure::Hits(at)) = found else { panic!("{found:?}") };
         let at = (at.low.to_f64(), at.high.to_f64());
         assert_eq!(at, (1.5, 1.5));

@@ -1,7 +1,6 @@
 //! The first hit of a line, by the method that fits the equation.
 
-use super::algebraic::AnyNumber;
-use super::equation::{HitEnclosure, Values};
+use super::equation::{AnyNumber, HitEnclosure, Values};
 use super::{closed, search};
 use crate::geometry::sight::Line;
 use std::ops::RangeInclusive;
@@ -29,8 +28,8 @@ pub(super) const FINE: Budget = Budget { operations: 2_000, of_formulas: 1_600, 
 impl Budget {
     /// Returns the number of pieces after which a search is given up.
     pub fn pieces(&self, shape: &dyn AnyNumber) -> usize {
-        let has_field = Values::<Interval>::field(shape).is_some();
-        let operations = if has_field { self.of_formulas } else { self.operations };
+        let shape: &dyn Values<Interval> = shape;
+        let operations = if shape.field().is_some() { self.of_formulas } else { self.operations };
         (operations / shape.cost().max(1)).clamp(*self.pieces.start(), *self.pieces.end())
     }
 }

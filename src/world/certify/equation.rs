@@ -4,11 +4,11 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::Line;
 use glam::DVec3;
 use tabray_exact::dual::Dual;
+use tabray_exact::formula::along::AlongLines;
 use tabray_exact::formula::field::Field;
 use tabray_exact::formula::written::Obstacle;
-use tabray_exact::interval::{Float, Interval};
+use tabray_exact::interval::{Float, Interval, Wide};
 use tabray_exact::jet::Jet;
-use tabray_exact::polynomial::{Coefficient, Polynomial};
 use tabray_exact::scalar::Scalar;
 
 /// A shape given by an equation. Some of its solutions may be cut off.
@@ -35,14 +35,10 @@ pub trait Equation {
     /// Returns the equation's value at a point: 0 on the surface, with opposite signs on the two sides.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
-    /// Tells whether [`along`](Self::along) returns a polynomial within the degree limit of a [`Polynomial`].
-    fn is_polynomial(&self) -> bool {
-        false
-    }
-
-    /// Returns a polynomial that has the sign of [`value`](Self::value) everywhere along a line.
-    fn along<C: Coefficient, const N: usize>(&self, at: [Polynomial<C, N>; 3]) -> Polynomial<C, N> {
-        self.value(at)
+    /// Returns a polynomial that has the sign of [`value`](Self::value) everywhere, if there is one within the degree
+    /// limit of a [`Polynomial`](tabray_exact::polynomial::Polynomial).
+    fn polynomial(&self) -> Option<&AlongLines> {
+        None
     }
 
     /// Returns the formula that [`value`](Self::value) evaluates, if it is a formula of the scene.
@@ -91,8 +87,14 @@ pub trait Values<N: Scalar> {
     /// Transforms a line into the coordinates that the equation is written in.
     fn to_local(&self, line: Line<N>) -> Line<N>;
 
+    /// Returns [`Equation::polynomial`].
+    fn polynomial(&self) -> Option<&AlongLines>;
+
     /// Returns [`Equation::field`].
     fn field(&self) -> Option<&Field>;
+
+    /// Returns [`Equation::cost`].
+    fn cost(&self) -> usize;
 
     /// Encloses the value.
     fn value(&self, at: [N; 3]) -> N;
@@ -122,8 +124,16 @@ impl<E: Equation, N: Scalar> Values<N> for E {
         Equation::to_local(self, line)
     }
 
+    fn polynomial(&self) -> Option<&AlongLines> {
+        Equation::polynomial(self)
+    }
+
     fn field(&self) -> Option<&Field> {
         Equation::field(self)
+    }
+
+    fn cost(&self) -> usize {
+        Equation::cost(self)
     }
 
     fn value(&self, at: [N; 3]) -> N {
@@ -152,6 +162,11 @@ impl<E: Equation, N: Scalar> Values<N> for E {
         [low, high]
     }
 }
+
+/// An equation in the numbers of both precisions in which proofs are tried.
+pub trait AnyNumber: Values<Interval> + Values<Wide> {}
+
+impl<E: Equation> AnyNumber for E {}
 
 /// What is certain about a first hit, with numbers of one precision; see [`Enclosure`](super::Enclosure).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,9 +4,9 @@
 //! true point on the surface, somewhere in an enclosure. The point is known to lie on the surface, although no interval
 //! shows that.
 
-use super::algebraic::{self, AnyNumber};
+use super::algebraic;
 use super::along::{COARSE, FINE, first_along};
-use super::equation::{Equation, HitEnclosure, Values};
+use super::equation::{AnyNumber, Equation, HitEnclosure, Values};
 use super::footprint::OverFootprint;
 use super::search;
 use crate::geometry::sight::Line;

@@ -16,7 +16,6 @@ mod hit_proofs;
 mod premise;
 mod search;
 
-use algebraic::AnyNumber;
 pub use algebraic::exact_line;
 pub use doubt::Doubt;
 pub use equation::{Equation, HitEnclosure};
@@ -26,6 +25,7 @@ pub use premise::{Assumption, Premise};
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::sight::{Line, Sight};
+use equation::AnyNumber;
 use glam::DVec3;
 use tabray_exact::affine::Affine;
 use tabray_exact::double_double::DoubleDouble;

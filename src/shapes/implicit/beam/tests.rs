@@ -36,8 +36,8 @@ fn shape(text: &str) -> ImplicitShape<Surface> {
     let [low, high] = formula.bounds();
     let frame = Frame::at(DVec3::new(0.3, -0.2, 0.1));
     let (parts, most_pieces) = (Parts::new(low, high, 1), usize::MAX);
-    let recorded = Default::default();
-    ImplicitShape { formula, recorded, degree: None, frame, low, high, parts, most_pieces, nodes: None }
+    let (recorded, along_lines, degree, nodes) = Default::default();
+    ImplicitShape { formula, recorded, along_lines, degree, frame, low, high, parts, most_pieces, nodes }
 }
 
 /// Returns pseudorandom numbers from -0.5 to 0.5.
