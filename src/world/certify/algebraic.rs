@@ -141,6 +141,7 @@ pub(super) fn exact_hit(shape: &dyn Values<Wide>, sight: &Sight) -> Option<HitEn
     let is_pole = |root: &Root| poles.as_ref().is_some_and(|poles| polynomial.shares(root, poles));
     let is_wanted = |root: &Root| is_hit(root.wide()) != Some(false) && !is_pole(root);
     let root = polynomial.first_root(from, to, &is_wanted);
+    trail.touches = root.as_ref().is_some_and(|root| root.rises.is_none());
     let found = match root.map(|root| root.wide()) {
         None => HitEnclosure::Misses,
         Some(at) if is_hit(at).is_some() => HitEnclosure::Hits(at),

@@ -33,6 +33,8 @@ pub(super) struct Trail {
     pub clipped: Option<[f64; 2]>,
     /// The ends of the pieces into which that part was cut, in order.
     pub places: Vec<f64>,
+    /// Whether the equation is known not to change its sign at the hit.
+    pub touches: bool,
 }
 
 impl Trail {
@@ -147,7 +149,7 @@ impl<'s, F: Float> Check<'s, F> {
         }
     }
 
-    /// Tells whether the formula may be defined and 0 in an interval, and change its sign there.
+    /// Tells whether the formula may be defined and 0 in an interval, and change its sign there unless it is known not to.
     fn is_root(&self, root: Interval<F>) -> bool {
         let mut written = self.field.written();
         let mut seen = |t| written.at(&self.line.at(t));
@@ -160,8 +162,9 @@ impl<'s, F: Float> Check<'s, F> {
         if high.is_defined() == Some(false) {
             return false;
         }
-        // A formula of which squares were left out does not change its sign.
-        high.sign() != Some(before) || !self.field.keeps_signs() && seen(root).sign().is_none()
+        // A formula of which squares were left out does not change its sign, either.
+        let may_touch = self.trail.touches || !self.field.keeps_signs();
+        high.sign() != Some(before) || may_touch && seen(root).sign().is_none()
     }
 
     /// Returns `None` if the formula certainly changes its sign between two places, as far as it is seen at the ends of

@@ -6,6 +6,7 @@ use crate::certify::{Enclosure, Precision, first_hit};
 use crate::geometry::sight::Sight;
 use std::sync::Arc;
 use tabray_exact::formula::Formula;
+use tabray_exact::formula::along::AlongLines;
 use tabray_exact::interval::Fraction;
 
 /// A surface whose proofs are about one formula, although the scene has another.
@@ -27,6 +28,10 @@ impl Surface {
 impl Equation for Surface {
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.proven.at(at)
+    }
+
+    fn polynomial(&self) -> Option<&AlongLines> {
+        Some(self.proven.along_lines())
     }
 
     fn field(&self) -> Option<&Field> {
@@ -105,6 +110,17 @@ fn what_is_true_passes() {
     }
 }
 
+/// Outside of a part in the middle, Steiner's surface is the axes alone, and the formula touches 0 there. The place of the
+/// touch is no multiple of a power of two.
+#[test]
+fn a_touch_between_two_numbers_is_a_hit() {
+    let steiner = surface("x^2*y^2 + y^2*z^2 + z^2*x^2 - 2*x*y*z");
+    let sight = Sight::exactly(DVec3::new(3.0, 2.5, 4.5), DVec3::new(-9.0, -2.0, -13.5));
+    let found = first_hit(&steiner, &sight, Precision::Octuple);
+    let Enclosure::Hits(at) = found else { panic!("{found:?}") };
+    assert!((at * Interval::constant(3.0) - Interval::constant(1.0)).has_zero(), "{at:?}");
+}
+
 #[test]
 fn what_is_false_is_open() {
     let hits = |low: f64, high: f64| HitEnclosure::Hits(Interval { low, high });
@@ -155,7 +171,7 @@ fn what_is_clipped_away_is_open() {
     for [x, y] in [[0.1, 0.2], [-1.9, 1.9]] {
         let line = line::<f64>([x, y, -3.0], [0.0, 0.0, 1.0]);
         let checked = |clipped| {
-            let trail = Trail { clipped, places: Vec::new() };
+            let trail = Trail { clipped, ..Trail::default() };
             first(&surface, &line, HitEnclosure::Misses, &trail)
         };
         // The box is a little wider than it is given.
