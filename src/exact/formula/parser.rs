@@ -406,6 +406,10 @@ impl<'t> Parser<'t> {
                 format!("write a product as `{}`", product.join("*"))
             }
             "e" => "write `exp(1)` for the number e".to_owned(),
+            "pow" | "power" => "write `a^b` for a power".to_owned(),
+            "sqr" | "square" => "write `x^2` for a square".to_owned(),
+            "arcsin" | "arccos" | "arctan" => format!("write `a{}`", &word[3..]),
+            "length" | "norm" => "write `sqrt(x^2 + y^2 + z^2)` for a length".to_owned(),
             _ => return FormulaFault { unknown: Some(word.to_owned()), ..fault },
         };
         FormulaFault { help, ..fault }

@@ -6,11 +6,13 @@ use super::parsed::{Form, Word};
 use super::report::Report;
 use super::tokens::Tokens;
 use super::values;
+use crate::syntax::Syntax;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 use tabray_core::scene::value::Type;
 use tabray_core::text::{list, nearest, shortest};
+use tabray_exact::formula::variables::{CURVE, SURFACE};
 use tabray_exact::formula::{self, Formula, FormulaFault, Meant, Named, OwnFunction, is_in_name, is_taken};
 
 /// The maximum number of names that a message lists.
@@ -199,7 +201,7 @@ impl<'a> Numbers<'a> {
                 report.add(fault.help(format!("a formula goes in quotes: `\"{}\"`", word.text)));
                 Word { form: Form::Faulty, ..word }
             }
-            Some(Type::Formula(variables)) if !self.all.is_empty() => {
+            Some(Type::Formula(variables)) if self.may_name(&word.text, variables) => {
                 let mut used = Vec::new();
                 match self.formula(&word, variables, &mut used) {
                     Ok(_) if used.is_empty() => word,
@@ -207,6 +209,10 @@ impl<'a> Numbers<'a> {
                         Word { form: Form::Faulty, ..word }
                     }
                     Ok(formula) => Word { text: formula.to_string().into(), ..word },
+                    // The attribute explains it.
+                    Err(fault) if self.all.is_empty() && fault.unknown.as_deref().is_none_or(is_variable) => {
+                        word
+                    }
                     Err(fault) => {
                         let fault = self.explained(&word, fault, report);
                         report.add(fault);
@@ -216,6 +222,14 @@ impl<'a> Numbers<'a> {
             }
             _ => word,
         }
+    }
+
+    /// Tells whether a formula may name numbers of the scene, or what is to be explained as unknown.
+    fn may_name(&self, formula: &str, variables: &[&str]) -> bool {
+        let words = formula.split(|letter| !is_in_name(letter));
+        let mut names = words.map(|word| word.trim_start_matches(|letter: char| letter.is_ascii_digit()));
+        let is_other = |name: &str| !is_taken(name) && !variables.contains(&name);
+        !self.all.is_empty() || names.any(|name| name.starts_with(char::is_alphabetic) && is_other(name))
     }
 
     /// Tells whether a word without quotes is a named number, or a formula of some.
@@ -265,16 +279,24 @@ impl<'a> Numbers<'a> {
                 .help(format!("a {what} must be defined before it is used"));
         }
         let is_told = report.would_list(Severity::Error, &told.place);
-        if let Some(near) = nearest(&unknown, self.names().filter(|_| is_told)) {
+        let is_called = word.text[fault.place.end..].trim_start().starts_with('(');
+        let functions = formula::functions().map(|(name, _)| name).filter(|_| is_called);
+        if let Some(near) = nearest(&unknown, self.names().chain(functions).filter(|_| is_told)) {
             told = told.label(format!("did you mean `{near}`?")).meant(Some(near));
+        } else if !is_called && !is_taken(&unknown) && !is_variable(&unknown) {
+            told = told.label(match report.syntax() {
+                Syntax::Notes => format!("give it a value first: `let {unknown} 1`"),
+                Syntax::Toml => format!("give it a value first: `{unknown} = 1` in `[let]`"),
+            });
         }
         let names = list(self.names().take(LISTED));
         let more = if self.all.len() > LISTED { " and others" } else { "" };
-        match self.all.len() {
-            0 => told.help(fault.help),
-            1 => told.help(format!("{}; the named number is {names}", fault.help)),
-            _ => told.help(format!("{}; the named numbers are {names}{more}", fault.help)),
-        }
+        let known = match self.all.len() {
+            0 => String::new(),
+            1 => format!("; the named number is {names}"),
+            _ => format!("; the named numbers are {names}{more}"),
+        };
+        told.help(format!("{}{known}", fault.help))
     }
 
     /// Returns the names defined anywhere in the text.
@@ -293,4 +315,9 @@ impl<'a> Numbers<'a> {
             names
         })
     }
+}
+
+/// Tells whether a name is a variable of some formulas.
+fn is_variable(name: &str) -> bool {
+    SURFACE.contains(&name) || CURVE.contains(&name)
 }
