@@ -100,14 +100,16 @@ impl AttributeChecker<'_, '_> {
         let kind = entity.kind();
         let of_kind = |kind: Kind, is_there: bool| {
             let others = self.registry.iter().filter(|other| other.kind() == kind);
-            let others = others.filter(|_| is_there && near.is_none());
+            let others = others.filter(|_| is_there);
             others.filter_map(|other| has(other, &word.text)).take(MAX_OTHERS).collect::<Vec<_>>()
         };
-        let alike = of_kind(kind, !matches!(kind, Kind::Object | Kind::Texture));
-        let materials = of_kind(Kind::Material, alike.is_empty() && entity.refers_to(Kind::Material));
+        // What is only spelt alike may well be meant for another type.
+        let is_synonym = entity.attributes().any(|attribute| is_known_as(attribute, &word.text));
+        let alike = of_kind(kind, !is_synonym && !matches!(kind, Kind::Object | Kind::Texture));
+        let is_strange = alike.is_empty() && near.is_none();
+        let materials = of_kind(Kind::Material, is_strange && entity.refers_to(Kind::Material));
         let is_material = !materials.is_empty();
-        let shaders =
-            of_kind(Kind::Shader, alike.is_empty() && !is_material && entity.refers_to(Kind::Shader));
+        let shaders = of_kind(Kind::Shader, is_strange && !is_material && entity.refers_to(Kind::Shader));
         let there = match (alike.is_empty(), is_material) {
             (false, _) => "",
             (true, true) => ": write it there",
@@ -161,8 +163,13 @@ impl AttributeChecker<'_, '_> {
 
 /// Returns the name of an entity type that has an attribute, with the name that it has there.
 fn has(entity: &'static Entity, word: &str) -> Option<String> {
-    let is_known = |attribute: &&dyn Attribute| attribute.known_as().contains(&word.to_lowercase().as_str());
-    let known = find_attribute(entity, word).or_else(|| entity.attributes().find(is_known))?;
+    let known = || entity.attributes().find(|attribute| is_known_as(*attribute, word));
+    let known = find_attribute(entity, word).or_else(known)?;
     let its = known.name();
     Some(if its == word { format!("`{}`", entity.name) } else { format!("`{}` (as `{its}`)", entity.name) })
+}
+
+/// Tells whether other programs call an attribute so.
+fn is_known_as(attribute: &dyn Attribute, word: &str) -> bool {
+    attribute.known_as().contains(&word.to_lowercase().as_str())
 }
