@@ -6,7 +6,8 @@ use tabray::shapes::uv;
 static BASE: Pparm<DVec3> = Pparm::required("base", "the centre of its lower end").unit("world coordinates");
 static DIRECTION: Pparm<DVec3> =
     Pparm::or("direction", "the direction of the axis, upward", DVec3::Y).nonzero();
-static HEIGHT: Pparm<f64> = Pparm::required("height", "the length").unit("world units").positive();
+static HEIGHT: Pparm<f64> =
+    Pparm::required("height", "the length").known_as(&["length"]).unit("world units").positive();
 static RADIUS: Pparm<f64> =
     Pparm::required("radius", "the distance of its wall from the axis").unit("world units").positive();
 static OPEN: Pparm<bool> = Pparm::or("open", "whether it is a tube, without its two ends", false);

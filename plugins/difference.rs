@@ -7,7 +7,8 @@ static OBJECTS: Pparm<Objects> = Pparm::required(
     "objects",
     "the object and the objects taken away from it, defined earlier in the scene; they are seen only as parts of \
      this one",
-);
+)
+.known_as(&["children", "operands", "shapes", "solids"]);
 
 const TABLE: Table = &[&OBJECTS as &dyn Row];
 

@@ -8,7 +8,8 @@ use tabray::shapes::field::{self, Reduced, Regularity};
 static FORMULA: Pparm<Field> = Pparm::required(
     "formula",
     "the formula, which is 0 on the surface, below 0 inside of it and above 0 outside",
-);
+)
+.known_as(&["equation", "expression", "f", "function"]);
 static WHERE: Pparm<Option<Field>> = Pparm::or(
     "where",
     "a formula that cuts off the surface where it is below 0; where it is 0, the surface ends",
@@ -23,6 +24,7 @@ static BOX: Pparm<Option<[f64; 6]>> = Pparm::or(
      surface is open and shows its inside",
     None,
 )
+.known_as(&["bounding_box", "bounds", "contained_by", "extent", "range"])
 .each(&["low x", "low y", "low z", "high x", "high y", "high z"])
 .unit("world units")
 .must("a low corner and a high corner above it", |corners| {

@@ -8,7 +8,9 @@ pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")
         .nonzero()
         .shown(|normal| scaled(normal).normalize());
-pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane").unit("world coordinates");
+pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane")
+    .known_as(&["origin", "position", "through"])
+    .unit("world coordinates");
 
 /// The rows of every kind of plane.
 pub const TABLE: Table = &[&NORMAL, &POINT];

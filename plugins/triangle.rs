@@ -3,11 +3,14 @@
 use tabray::prelude::*;
 use tabray::shapes::LooseTriangle;
 
-static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
+static VERTEX1: Pparm<DVec3> =
+    Pparm::required("vertex1", "the first vertex").known_as(&["a"]).unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =
     Pparm::required("vertex2", "the second vertex, counterclockwise as seen from the lit side")
+        .known_as(&["b"])
         .unit("world coordinates");
-static VERTEX3: Pparm<DVec3> = Pparm::required("vertex3", "the third vertex").unit("world coordinates");
+static VERTEX3: Pparm<DVec3> =
+    Pparm::required("vertex3", "the third vertex").known_as(&["c"]).unit("world coordinates");
 // The course's program reads these two attributes and does not use them.
 static NORMAL: Pparm<DVec3> =
     Pparm::or("normal", "ignored, as the vertices determine which side is lit", DVec3::Z).not_dumped();

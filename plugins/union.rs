@@ -6,7 +6,8 @@ use tabray::shapes::{Objects, Operation, combined};
 static OBJECTS: Pparm<Objects> = Pparm::required(
     "objects",
     "the objects, defined earlier in the scene; they are seen only as parts of it",
-);
+)
+.known_as(&["children", "operands", "shapes", "solids"]);
 
 const TABLE: Table = &[&OBJECTS as &dyn Row];
 

@@ -95,6 +95,11 @@ pub fn cure(attribute: &dyn Attribute, words: &[Word<'_>], syntax: Syntax) -> Op
     if let (true, false, Some([level])) = (is_colour, takes(1), numbers(text).as_deref()) {
         return Some(format!("a grey is three equal numbers: {}", write(&[*level; 3])));
     }
+    if let ("scale" | "size", true, false, Some([length])) =
+        (attribute.name(), takes(3), takes(1), numbers(text).as_deref())
+    {
+        return Some(format!("the same along each axis is {}", write(&[*length; 3])));
+    }
     if let (true, [word]) = (is_colour, words)
         && !takes(1)
         && Formula::parse_in(&word.text, &[]).is_ok()
