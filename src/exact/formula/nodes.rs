@@ -7,6 +7,7 @@ use crate::interval::Interval;
 use crate::roots::bernstein::{BINOMIALS, Bernstein};
 use crate::scalar::{Scalar, per_axis};
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 /// Half the distance from 1 to the next number: the maximum rounding error of an operation, as a fraction of its
 /// result.
@@ -34,19 +35,39 @@ const AROUND: f64 = 1.0 / 1024.0;
 /// The evaluation of a formula along lines in a box.
 pub struct Nodes {
     program: Program,
+    basis: &'static Basis,
     degree: usize,
-    /// The nodes, from -1 to 1.
-    places: Vec<f64>,
-    /// For each node, the Bernstein coefficients of the polynomial that is 1 at this node and 0 at the others.
-    weights: Vec<Vec<f64>>,
-    /// The maximum sum, over coefficients, of the absolute values of a coefficient's weights.
-    norm: f64,
     /// A bound of the error of a value for exact coordinates, and its growth with the error of the coordinates.
     error: [f64; 2],
     /// The maximum error of a coordinate for which the bound holds.
     most_off: f64,
     /// The maximum magnitude of a coordinate in the box.
     size: f64,
+}
+
+/// The nodes for polynomials of a degree.
+struct Basis {
+    /// The nodes, from -1 to 1.
+    places: Vec<f64>,
+    /// For each node, the Bernstein coefficients of the polynomial that is 1 at this node and 0 at the others.
+    weights: Vec<Vec<f64>>,
+    /// The maximum sum, over coefficients, of the absolute values of a coefficient's weights.
+    norm: f64,
+}
+
+/// The nodes for each degree, once a formula needs them.
+static BASES: [OnceLock<Option<Basis>>; MAX_DEGREE + 1] = [const { OnceLock::new() }; MAX_DEGREE + 1];
+
+impl Basis {
+    fn new(degree: usize) -> Option<Self> {
+        let count = degree + 1;
+        let places: Vec<f64> =
+            (0..count).map(|node| -libm::cos(PI * (node as f64 + 0.5) / count as f64)).collect();
+        let weights = weights(&places)?;
+        let sum = |of: usize| weights.iter().map(|weights| weights[of].abs()).sum::<f64>();
+        let norm = (0..count).map(sum).fold(0.0, f64::max);
+        Some(Self { places, weights, norm })
+    }
 }
 
 /// A line: the points `base + t dir`. The coordinates of `base` may be off by `blur`, and those of `dir` by `turn`.
@@ -72,26 +93,21 @@ impl Nodes {
         });
         let size = within.iter().fold(0.0, |size: f64, side| size.max(side.magnitude()));
         let most_off = MAX_ERROR * size;
-        if program.registers > MAX_REGISTERS || degree > MAX_DEGREE {
+        if program.registers > MAX_REGISTERS {
             return None;
         }
         let error = |off: f64| error(program, within, off).filter(|error| *error < f64::INFINITY);
         let exact = error(0.0)?;
         // The error is a polynomial of a coordinate's error with positive coefficients, and so it is below its chord.
         let grows = (error(most_off)? - exact) / most_off;
-        let count = degree + 1;
-        let places: Vec<f64> =
-            (0..count).map(|node| -libm::cos(PI * (node as f64 + 0.5) / count as f64)).collect();
-        let weights = weights(&places)?;
-        let sum = |of: usize| weights.iter().map(|weights| weights[of].abs()).sum::<f64>();
-        let norm = (0..count).map(sum).fold(0.0, f64::max);
+        let basis = BASES.get(degree)?.get_or_init(|| Basis::new(degree)).as_ref()?;
         let error = [exact, ROUNDED_UP * grows.max(0.0)];
-        Some(Self { program: program.clone(), degree, places, weights, norm, error, most_off, size })
+        Some(Self { program: program.clone(), basis, degree, error, most_off, size })
     }
 
     /// Returns the formula on a piece of a line in the box, or `None` if its error is unknown.
     pub fn form<const N: usize>(&self, line: &NearLine, piece: Interval) -> Option<Bernstein<f64, N>> {
-        match self.places.len() {
+        match self.degree + 1 {
             0..=4 => self.form_by::<N, 4>(line, piece),
             5..=6 => self.form_by::<N, 6>(line, piece),
             7..=8 => self.form_by::<N, 8>(line, piece),
@@ -115,7 +131,7 @@ impl Nodes {
         }
         let (middle, half) = (0.5 * piece.low + 0.5 * piece.high, 0.5 * (piece.high - piece.low));
         let mut at = [[0.0; LANES]; 3];
-        for (lane, place) in self.places.iter().enumerate() {
+        for (lane, place) in self.basis.places.iter().enumerate() {
             let t = middle + half * place;
             for axis in 0..3 {
                 at[axis][lane] = base[axis] + t * dir[axis];
@@ -126,7 +142,7 @@ impl Nodes {
             _ => run::<LANES, MAX_REGISTERS>(&self.program, at),
         };
         let (mut coefficients, mut largest) = ([0.0; N], 0.0_f64);
-        for (value, weights) in values.iter().zip(&self.weights) {
+        for (value, weights) in values.iter().zip(&self.basis.weights) {
             largest = largest.max(value.abs());
             let sums = &mut coefficients[..weights.len()];
             for of in 0..weights.len() {
@@ -135,7 +151,7 @@ impl Nodes {
         }
         let [exact, grows] = self.error;
         let rounding = (self.degree + 8) as f64 * ROUNDING * largest;
-        let error = ROUNDED_UP * self.norm * (exact + grows * off + rounding) + f64::MIN_POSITIVE;
+        let error = ROUNDED_UP * self.basis.norm * (exact + grows * off + rounding) + f64::MIN_POSITIVE;
         Bernstein::known(coefficients, self.degree, error)
     }
 }
