@@ -285,7 +285,7 @@ fn continued(text: &str) -> usize {
 }
 
 /// Returns the probable length of a word with an opening quote but no closing one on its line: up to a later closing
-/// quote, or else the line, unless it has a brace, or else one word.
+/// quote, or else the line, of which a formula ends at a brace, and any other word with a brace after it at white space.
 fn unclosed(text: &str) -> usize {
     let line = text.find('\n').unwrap_or(text.len());
     if let Some(length) = text[line..].find(['"', '{', '}', '#'])
@@ -295,7 +295,12 @@ fn unclosed(text: &str) -> usize {
         return line + length + 1;
     }
     let line = text[..line].trim_end();
-    if line.contains(['{', '}', '#']) { word_end(text, 1) } else { line.len() }
+    let (word, is_operator) = (word_end(text, 1), |letter| "+-*/^".contains(letter));
+    match line.find(['{', '}', '#']) {
+        None => line.len(),
+        Some(end) if line[word..].trim_start().starts_with(is_operator) => line[..end].trim_end().len(),
+        Some(_) => word,
+    }
 }
 
 /// Returns the text of a quoted word: `\\` and `\"` stand for a backslash and a quote, and other escape sequences are
