@@ -20,6 +20,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's functions"))]
 
 pub mod affine;
+mod chain_rule;
 pub mod decimal;
 pub mod double_double;
 pub mod dual;

@@ -26,6 +26,22 @@ pub(crate) fn apart<R>(operation: impl FnOnce() -> R) -> R {
     operation()
 }
 
+/// Implements an operator of a number type with these generic parameters.
+macro_rules! operator {
+    ([$($generics:tt)*] $Number:ty, $Operator:ident $function:ident($one:ident $(, $other:ident)?) => $value:expr) => {
+        impl<$($generics)*> std::ops::$Operator for $Number {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function($one $(, $other: Self)?) -> Self {
+                $value
+            }
+        }
+    };
+}
+
+pub(crate) use operator;
+
 /// A number type for the evaluation of formulas.
 ///
 /// The square root of a negative number is 0, and so a profile such as `sqrt(9 - y^2)` has an end and not a gap in its
