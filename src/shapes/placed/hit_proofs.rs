@@ -4,7 +4,6 @@ use super::shape::Placed;
 use glam::DVec3;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
-use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 use tabray_world::certify::{FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise};
@@ -30,12 +29,12 @@ impl<F: Precise> HitProofs<F> for Placed {
         }
     }
 
-    fn obstacle(&self, at: [Interval<F>; 3], part: usize) -> Option<Obstacle> {
-        F::proofs(self.body.shape.proven()?).obstacle(self.placement.point(at), part)
+    fn source(&self, part: usize) -> Option<(&dyn HitProofs<F>, usize)> {
+        Some((F::proofs(self.body.shape.proven()?), part))
     }
 
-    fn has_equation(&self, part: usize) -> bool {
-        self.body.shape.proven().is_none_or(|proven| F::proofs(proven).has_equation(part))
+    fn to_source(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
+        self.placement.point(at)
     }
 
     fn shading_normal(
@@ -58,18 +57,6 @@ impl<F: Precise> HitProofs<F> for Placed {
         let world = per_axis(|axis| dot(self.placement.vector(constants(DVec3::AXES[axis])), shaded));
         let length = dot(world, world).sqrt();
         Some(per_axis(|axis| world[axis] / length))
-    }
-
-    fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
-        F::proofs(self.body.shape.proven()?).uv_bounds(self.placement.point(at), part)
-    }
-
-    fn face_of(&self, part: usize) -> Option<u32> {
-        F::proofs(self.body.shape.proven()?).face_of(part)
-    }
-
-    fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
-        F::proofs(self.body.shape.proven()?).face(self.placement.point(at), part)
     }
 }
 

@@ -4,7 +4,6 @@ use super::crossings::Crossings;
 use super::solid_part::SolidPart;
 use tabray_exact::affine::Affine;
 use tabray_exact::dual::Dual;
-use tabray_exact::formula::written::Obstacle;
 use tabray_exact::interval::Interval;
 use tabray_world::certify::{
     FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precise, ProofMethods, coarse,
@@ -127,29 +126,8 @@ impl<F: Precise> HitProofs<F> for SolidPart {
         }
     }
 
-    fn obstacle(&self, at: [Interval<F>; 3], part: usize) -> Option<Obstacle> {
-        F::proofs(self.proven(self.index)?).obstacle(at, part)
-    }
-
-    fn shading_normal(
-        &self,
-        at: [Interval<F>; 3],
-        part: usize,
-        normal: [Interval<F>; 3],
-    ) -> Option<[Interval<F>; 3]> {
-        F::proofs(self.proven(self.index)?).shading_normal(at, part, normal)
-    }
-
-    fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
-        F::proofs(self.proven(self.index)?).uv_bounds(at, part)
-    }
-
-    fn face_of(&self, part: usize) -> Option<u32> {
-        F::proofs(self.proven(self.index)?).face_of(part)
-    }
-
-    fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
-        F::proofs(self.proven(self.index)?).face(at, part)
+    fn source(&self, part: usize) -> Option<(&dyn HitProofs<F>, usize)> {
+        Some((F::proofs(self.proven(self.index)?), part))
     }
 }
 

@@ -38,47 +38,65 @@ pub trait HitProofs<F: Float> {
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
 
-    /// Returns what keeps proofs from looking past the points of a part in a box in world coordinates, as far as its
-    /// equation is a formula of the scene.
-    fn obstacle(&self, _at: [Interval<F>; 3], _part: usize) -> Option<Obstacle> {
+    /// Returns the shape whose part a part of this one is, with the number that the part has there. Nothing more is said
+    /// of the part than is known of that one.
+    fn source(&self, _part: usize) -> Option<(&dyn HitProofs<F>, usize)> {
         None
     }
 
+    /// Transforms points to the world coordinates of the [source](Self::source).
+    fn to_source(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
+        at
+    }
+
+    /// Returns what keeps proofs from looking past the points of a part in a box in world coordinates, as far as its
+    /// equation is a formula of the scene.
+    fn obstacle(&self, at: [Interval<F>; 3], part: usize) -> Option<Obstacle> {
+        let (source, part) = self.source(part)?;
+        source.obstacle(self.to_source(at), part)
+    }
+
     /// Tells whether a part has an equation. For a part without one, [`slope`](Self::slope) knows no value.
-    fn has_equation(&self, _part: usize) -> bool {
-        true
+    fn has_equation(&self, part: usize) -> bool {
+        self.source(part).is_none_or(|(source, part)| source.has_equation(part))
     }
 
     /// Encloses the unit normal with which a point of a part is shaded, where that normal differs from `normal`, the
     /// normal of the surface. It is turned to the ray where both sides are lit; `None` where it is open.
     fn shading_normal(
         &self,
-        _at: [Interval<F>; 3],
-        _part: usize,
+        at: [Interval<F>; 3],
+        part: usize,
         normal: [Interval<F>; 3],
     ) -> Option<[Interval<F>; 3]> {
-        Some(normal)
+        match self.source(part) {
+            Some((source, part)) => source.shading_normal(self.to_source(at), part, normal),
+            None => Some(normal),
+        }
     }
 
     /// Encloses the coordinates u and v of the points of a part in a box in world coordinates; `None` where they are
     /// not known.
-    fn uv_bounds(&self, _at: [Interval<F>; 3], _part: usize) -> Option<[Interval; 2]> {
-        None
+    fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
+        let (source, part) = self.source(part)?;
+        source.uv_bounds(self.to_source(at), part)
     }
 
     /// Returns the index of a part's face, as [`Hittable::face`] tells it, if the parts of the shape are faces.
     ///
     /// [`Hittable::face`]: crate::hittable::Hittable::face
-    fn face_of(&self, _part: usize) -> Option<u32> {
-        None
+    fn face_of(&self, part: usize) -> Option<u32> {
+        let (source, part) = self.source(part)?;
+        source.face_of(part)
     }
 
     /// Returns the index of the face on which the points of a part in a box in world coordinates lie, as
     /// [`Hittable::face`] tells it; `None` where it is not known.
     ///
     /// [`Hittable::face`]: crate::hittable::Hittable::face
-    fn face(&self, _at: [Interval<F>; 3], _part: usize) -> Option<u32> {
-        None
+    fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
+        let (source, part) = self.source(part)?;
+        source.face(self.to_source(at), part)
     }
 }
 

@@ -97,25 +97,8 @@ impl<A: NotClassic, F: Precise> HitProofs<F> for Boundary<A> {
         if part & 1 == 1 { -slope } else { slope }
     }
 
-    fn shading_normal(
-        &self,
-        at: [Interval<F>; 3],
-        part: usize,
-        normal: [Interval<F>; 3],
-    ) -> Option<[Interval<F>; 3]> {
-        HitProofs::<F>::shading_normal(&self.mesh, at, part >> 1, normal)
-    }
-
-    fn uv_bounds(&self, at: [Interval<F>; 3], part: usize) -> Option<[Interval; 2]> {
-        HitProofs::<F>::uv_bounds(&self.mesh, at, part >> 1)
-    }
-
-    fn face_of(&self, part: usize) -> Option<u32> {
-        HitProofs::<F>::face_of(&self.mesh, part >> 1)
-    }
-
-    fn face(&self, at: [Interval<F>; 3], part: usize) -> Option<u32> {
-        HitProofs::<F>::face(&self.mesh, at, part >> 1)
+    fn source(&self, part: usize) -> Option<(&dyn HitProofs<F>, usize)> {
+        Some((&self.mesh, part >> 1))
     }
 }
 
