@@ -7,12 +7,20 @@ use tabray_core::text;
 
 /// How answers are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "commands", derive(clap::ValueEnum))]
 pub enum AnswerFormat {
-    /// A JSON object a line; what there is not is left out.
+    /// A JSON object per line
+    ///
+    /// What there is not is left out.
+    #[cfg_attr(feature = "commands", value(name = "jsonl"))]
     JsonLines,
-    /// A line of names, and then of values; what there is not is empty.
+    /// A line of names, and then of values
+    ///
+    /// What there is not is empty.
     Csv,
-    /// A structured NumPy array; what there is not is -1 or NaN.
+    /// A NumPy array
+    ///
+    /// It is structured; what there is not is -1 or NaN.
     Npy,
 }
 

@@ -65,9 +65,7 @@ impl<'r> Rows<'r> {
         let mut bytes = [0; 7 * 8];
         let bytes = &mut bytes[..self.columns * self.size];
         if let Err(error) = self.input.read_exact(bytes) {
-            let is_short = error.kind() == io::ErrorKind::UnexpectedEof;
-            let why = if is_short { "the array ends before it".to_owned() } else { reason(&error) };
-            return Some(Err((why, true)));
+            return Some(Err(unread(&error)));
         }
         let mut ray = [f64::INFINITY; 7];
         if self.size == 4 {
@@ -84,6 +82,12 @@ impl<'r> Rows<'r> {
         let [a, b, c, d, e, f, end] = ray;
         Some(Ok(([a, b, c, d, e, f], (end != f64::INFINITY).then_some(end))))
     }
+}
+
+/// Returns why a row cannot be read. It is the last one.
+pub(super) fn unread(error: &io::Error) -> (String, bool) {
+    let is_short = error.kind() == io::ErrorKind::UnexpectedEof;
+    (if is_short { "the array ends before it".to_owned() } else { reason(error) }, true)
 }
 
 /// Reads the header of a file: the text of a Python dictionary.

@@ -15,14 +15,24 @@ const LONGEST: u64 = 1 << 12;
 
 /// The formats of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "commands", derive(clap::ValueEnum))]
 pub enum RayFormat {
-    /// Six numbers a line: the origin and the direction; a seventh is the t at which the ray ends. `#` begins a comment.
+    /// Six or seven numbers per line
+    ///
+    /// These are the origin, the direction, and the t at which the ray ends. `#` begins a comment.
     Text,
-    /// A line of names, and then numbers: `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, and `t_max` where rays end.
+    /// A line of names, and lines of values
+    ///
+    /// The names are `ox`, `oy`, `oz`, `dx`, `dy`, `dz`, and `t_max` where rays end.
     Csv,
-    /// A JSON value a line: `{"origin": [x, y, z], "direction": [x, y, z], "t_max": t}`, or a list of numbers as in text.
+    /// A JSON object or list per line
+    ///
+    /// An object is `{"origin": [x, y, z], "direction": [x, y, z], "t_max": t}`. A list has the numbers as in text.
+    #[cfg_attr(feature = "commands", value(name = "jsonl"))]
     JsonLines,
-    /// A NumPy array of shape (n, 6) or (n, 7), of `f8` or `f4`.
+    /// A NumPy array
+    ///
+    /// Its shape is (n, 6) or (n, 7), and its type `f8` or `f4`.
     Npy,
 }
 
@@ -104,10 +114,8 @@ impl<'r> RayReader<'r> {
                 Rows::Npy(npy::Rows::new(Box::new(input)).map_err(|message| bad(1, "row", message))?)
             }
             RayFormat::Csv => {
-                let names = match next_line(&mut input, &mut number, true) {
-                    None => String::new(),
-                    Some(names) => names.map_err(|(message, _)| bad(number, "line", message))?,
-                };
+                let names = next_line(&mut input, &mut number, true).transpose();
+                let names = names.map_err(|(message, _)| bad(number, "line", message))?.unwrap_or_default();
                 let columns = columns(&names).map_err(|message| bad(number, "line", message))?;
                 Rows::Lines(input, LineForm::Csv(columns))
             }

@@ -1,10 +1,10 @@
 //! Reads the answers of an earlier run, at whose hits rays start.
 
-use super::columns::{self, Cell};
+use super::columns;
 use super::npy;
 use super::rays::{BadRay, Input, next_line, numbered};
 use serde::Deserialize;
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use tabray_core::output::npy::MAGIC;
 use tabray_core::text::reason;
 
@@ -111,27 +111,19 @@ fn records(input: &mut Input<'_>) -> Result<Form, String> {
     let (true, Some(left)) = (head.contains(&columns::record()), left) else {
         return Err("it is no array of answers, as `tabray hits -o answers.npy` writes it".to_owned());
     };
-    let (mut size, mut at) = (0, [0; 2]);
-    for (name, cell) in columns::of_arrays() {
+    let (mut record, mut at) = (Vec::new(), [0; 2]);
+    for (name, absent) in columns::of_arrays() {
         if let Some(index) = IN_ARRAYS.iter().position(|known| *known == name) {
-            at[index] = size;
+            at[index] = record.len();
         }
-        size += match cell {
-            Cell::Word(_) => size_of::<u8>(),
-            Cell::Index(_) => size_of::<i32>(),
-            Cell::Number(_) => size_of::<f64>(),
-            Cell::Vector(_, width) => width * size_of::<f64>(),
-        };
+        absent.write(&mut record);
     }
-    Ok(Form::Npy { size, at, left })
+    Ok(Form::Npy { size: record.len(), at, left })
 }
 
 fn record(input: &mut Input<'_>, size: usize, at: [usize; 2]) -> Result<Option<HitSurface>, (String, bool)> {
     let mut bytes = vec![0; size];
-    input.read_exact(&mut bytes).map_err(|error| {
-        let is_short = error.kind() == ErrorKind::UnexpectedEof;
-        (if is_short { "the array ends before it".to_owned() } else { reason(&error) }, true)
-    })?;
+    input.read_exact(&mut bytes).map_err(|error| npy::unread(&error))?;
     let number = |at: usize| {
         let number = bytes[at..].first_chunk().map(|bytes| i32::from_le_bytes(*bytes));
         number.and_then(|number| usize::try_from(number).ok())

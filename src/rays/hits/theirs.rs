@@ -78,10 +78,8 @@ impl<'r> TheirReader<'r> {
             return Ok(Self { input, columns: None, number: 0, is_over: false });
         }
         let mut number = 0;
-        let names = match next_line(&mut input, &mut number, true) {
-            None => String::new(),
-            Some(names) => names.map_err(|(message, _)| bad(number, message))?,
-        };
+        let names = next_line(&mut input, &mut number, true).transpose();
+        let names = names.map_err(|(message, _)| bad(number, message))?.unwrap_or_default();
         let ray = columns(&names).map_err(|message| bad(number, message))?;
         let answer = ANSWER.map(|column| fields(&names).position(|name| name == column));
         if answer[..2] == [None; 2] {

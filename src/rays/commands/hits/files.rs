@@ -2,7 +2,6 @@
 
 use crate::hits::answers::AnswerFormat;
 use crate::hits::rays::{BadRay, Input};
-use clap::ValueEnum;
 use std::io::{self, BufReader, IsTerminal, Read};
 use std::path::Path;
 use tabray_cli::files::input::is_standard;
@@ -10,27 +9,6 @@ use tabray_cli::files::paths::open_stream;
 use tabray_cli::process::failure::Failure;
 use tabray_cli::process::messages;
 use tabray_core::text;
-
-/// The format on standard output.
-#[derive(Clone, Copy, ValueEnum)]
-pub enum To {
-    /// A JSON object per line
-    Jsonl,
-    /// A line of names, and then of values
-    Csv,
-    /// A NumPy array
-    Npy,
-}
-
-impl To {
-    pub fn format(self) -> AnswerFormat {
-        match self {
-            Self::Jsonl => AnswerFormat::JsonLines,
-            Self::Csv => AnswerFormat::Csv,
-            Self::Npy => AnswerFormat::Npy,
-        }
-    }
-}
 
 /// How much is read at a time, in bytes: many lines, so that all threads have work.
 const BUFFER: usize = 1 << 20;

@@ -1,6 +1,6 @@
 //! `tabray hard`: writes rays that are hard to decide.
 
-use super::files::{To, of_name};
+use super::files::of_name;
 use super::model;
 use crate::hits::answers::AnswerFormat;
 use crate::hits::hard;
@@ -42,7 +42,7 @@ pub struct Args {
     output: Option<PathBuf>,
     /// The format on standard output
     #[arg(long, value_name = "FORM", default_value = "csv", conflicts_with = "output")]
-    to: To,
+    to: AnswerFormat,
     #[command(flatten)]
     threads: threads::Args,
 }
@@ -58,7 +58,7 @@ inventory::submit! {
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let format = match &args.output {
-        None => args.to.format(),
+        None => args.to,
         Some(path) => of_name(path)?,
     };
     let model = model::load(registry, &args.scene, &args.set, Some(Accuracy::Exact))?;

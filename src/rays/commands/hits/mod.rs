@@ -9,8 +9,7 @@ use crate::hits::answers::AnswerFormat;
 use crate::hits::rays::{BadRay, RayFormat, RayReader};
 use crate::hits::starts::StartReader;
 use crate::hits::{self, Asked, Ended, Tally};
-use clap::ValueEnum;
-use files::{To, name, of_name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
+use files::{name, of_name, open, refuse, refuse_two_on_standard_input, tell_of_bad};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tabray_cli::files::output::{self, Output};
@@ -50,7 +49,7 @@ pub struct Args {
     set: set::Args,
     /// The format of the rays; by default, their first bytes tell it
     #[arg(long, value_name = "FORM")]
-    from: Option<From>,
+    from: Option<RayFormat>,
     /// Ask about the rays through the middles of the pixels of the scene's camera, row by row from the top, with t in world
     /// units
     #[arg(long, conflicts_with_all = ["rays", "from", "skip_bad"])]
@@ -64,7 +63,7 @@ pub struct Args {
     output: Option<PathBuf>,
     /// The format of the answers on standard output
     #[arg(long, value_name = "FORM", default_value = "jsonl", conflicts_with = "output")]
-    to: To,
+    to: AnswerFormat,
     /// Prove nothing, and give what the tracer finds, many times faster
     #[arg(long)]
     fast: bool,
@@ -100,29 +99,6 @@ Examples:
   tabray hits part.stl shadows.npy --leaving answers.npy
   tabray hits ball.ray --from-camera --to csv";
 
-#[derive(Clone, Copy, ValueEnum)]
-enum From {
-    /// Six or seven numbers per line
-    Text,
-    /// A line of names, and lines of values
-    Csv,
-    /// A JSON object or list per line
-    Jsonl,
-    /// A NumPy array
-    Npy,
-}
-
-impl From {
-    fn format(self) -> RayFormat {
-        match self {
-            Self::Text => RayFormat::Text,
-            Self::Csv => RayFormat::Csv,
-            Self::Jsonl => RayFormat::JsonLines,
-            Self::Npy => RayFormat::Npy,
-        }
-    }
-}
-
 /// Reads the t at which rays end.
 fn end(text: &str) -> Result<f64, String> {
     let end = text.parse().ok().filter(|end: &f64| *end > 0.0);
@@ -135,7 +111,7 @@ inventory::submit! {
 
 fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let format = match &args.output {
-        None => args.to.format(),
+        None => args.to,
         Some(path) => of_name(path)?,
     };
     let rays = args.rays.as_deref().unwrap_or(Path::new("-"));
@@ -153,8 +129,7 @@ fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         false => {
             let input = open(rays, "rays, six numbers a line,")?;
             let refused = |path: &Path, bad: BadRay| Failure::usage(format!("`{}`, {bad}", name(path)));
-            let reader =
-                RayReader::new(input, args.from.map(From::format)).map_err(|bad| refused(rays, bad))?;
+            let reader = RayReader::new(input, args.from).map_err(|bad| refused(rays, bad))?;
             Some(match &args.leaving {
                 None => reader,
                 Some(path) => {
