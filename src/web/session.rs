@@ -48,6 +48,11 @@ impl Answer {
     fn missing() -> Self {
         Self::new(404, "there is nothing of that kind to ask")
     }
+
+    /// Returns what a word of a path asks for, if it is a number.
+    fn at(word: &str, answer: impl FnOnce(usize) -> Self) -> Self {
+        word.parse().map_or_else(|_| Self::missing(), answer)
+    }
 }
 
 /// One scene, until the next one replaces it.
@@ -78,6 +83,7 @@ impl Session {
 
     /// Answers a request with a path, whose parts are separated by `/`, and a body.
     pub fn answer(&mut self, path: &str, body: &[u8]) -> Answer {
+        let registry = self.registry;
         let text = str::from_utf8(body).unwrap_or_default();
         let parts: Vec<&str> = path.split('/').collect();
         match parts[..] {
@@ -99,22 +105,13 @@ impl Session {
                 Ok(text) => Answer::new(200, text),
                 Err(unknown) => Answer::new(404, unknown),
             },
-            ["formula"] => Answer::json(&formula::of(self.registry, text)),
-            ["formula", "change"] => Answer::changed(formula::changed(self.registry, text)),
-            ["diagnose"] => Answer::json(&editing::diagnose(self.registry, text)),
-            ["complete", at] => at.parse().map_or_else(
-                |_| Answer::missing(),
-                |at| Answer::json(&editing::completions(self.registry, text, at)),
-            ),
-            ["hover", at] => at.parse().map_or_else(
-                |_| Answer::missing(),
-                |at| Answer::json(&editing::hover(self.registry, text, at)),
-            ),
-            ["signature", at] => at.parse().map_or_else(
-                |_| Answer::missing(),
-                |at| Answer::json(&editing::signature(self.registry, text, at)),
-            ),
-            ["format"] => Answer::changed(editing::formatted(self.registry, text)),
+            ["formula"] => Answer::json(&formula::of(registry, text)),
+            ["formula", "change"] => Answer::changed(formula::changed(registry, text)),
+            ["diagnose"] => Answer::json(&editing::diagnose(registry, text)),
+            ["complete", at] => Answer::at(at, |at| Answer::json(&editing::completions(registry, text, at))),
+            ["hover", at] => Answer::at(at, |at| Answer::json(&editing::hover(registry, text, at))),
+            ["signature", at] => Answer::at(at, |at| Answer::json(&editing::signature(registry, text, at))),
+            ["format"] => Answer::changed(editing::formatted(registry, text)),
             [what, version, ref rest @ ..] => self.about(what, version, rest, text),
             _ => Answer::missing(),
         }
@@ -145,15 +142,9 @@ impl Session {
         };
         let (model, registry) = (&scene.model, self.registry);
         match (what, rest) {
-            ("paint", [count]) => count.parse().map_or_else(
-                |_| Answer::missing(),
-                |count| Answer::new(200, self.painting.next(model, count)),
-            ),
+            ("paint", [n]) => Answer::at(n, |n| Answer::new(200, self.painting.next(model, n))),
             ("painted", []) => Answer::json(&self.painting.remark(model)),
-            ("prove", [count]) => count.parse().map_or_else(
-                |_| Answer::missing(),
-                |count| Answer::new(200, self.proving.next(model, count)),
-            ),
+            ("prove", [n]) => Answer::at(n, |n| Answer::new(200, self.proving.next(model, n))),
             ("bytes", []) => Answer::of(self.painting.whole().map(|whole| whole.bytes.to_vec())),
             ("png", []) => Answer::of(files::png(&self.painting)),
             ("exr", []) => Answer::of(files::exr(&self.painting)),
