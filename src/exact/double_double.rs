@@ -6,8 +6,8 @@ mod elementary;
 pub mod exact;
 pub mod vectors;
 
+use crate::scalar::operator;
 use glam::DVec3;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Returns the rounded sum of two numbers and its rounding error.
 #[inline(always)]
@@ -131,58 +131,25 @@ impl DoubleDouble {
     }
 }
 
-impl Add for DoubleDouble {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        let (high, high_low) = two_sum(self.high, other.high);
-        let (low, low_low) = two_sum(self.low, other.low);
-        let Self { high, low } = Self::normal(high, high_low + low);
-        Self::normal(high, low + low_low)
-    }
-}
-
-impl Neg for DoubleDouble {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { high: -self.high, low: -self.low }
-    }
-}
-
-impl Sub for DoubleDouble {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for DoubleDouble {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let (high, low) = two_product(self.high, other.high);
-        Self::normal(high, low + (self.high * other.low + self.low * other.high))
-    }
-}
-
-impl Div for DoubleDouble {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        let first = self.high / other.high;
-        let rest = self - other * Self::from(first);
-        let second = rest.high / other.high;
-        let rest = rest - other * Self::from(second);
-        Self::normal(first, second) + Self::from(rest.high / other.high)
-    }
-}
+operator!([] DoubleDouble, Add add(self, other) => {
+    let (high, high_low) = two_sum(self.high, other.high);
+    let (low, low_low) = two_sum(self.low, other.low);
+    let Self { high, low } = Self::normal(high, high_low + low);
+    Self::normal(high, low + low_low)
+});
+operator!([] DoubleDouble, Neg neg(self) => Self { high: -self.high, low: -self.low });
+operator!([] DoubleDouble, Sub sub(self, other) => self + -other);
+operator!([] DoubleDouble, Mul mul(self, other) => {
+    let (high, low) = two_product(self.high, other.high);
+    Self::normal(high, low + (self.high * other.low + self.low * other.high))
+});
+operator!([] DoubleDouble, Div div(self, other) => {
+    let first = self.high / other.high;
+    let rest = self - other * Self::from(first);
+    let second = rest.high / other.high;
+    let rest = rest - other * Self::from(second);
+    Self::normal(first, second) + Self::from(rest.high / other.high)
+});
 
 #[cfg(test)]
 mod tests {

@@ -3,10 +3,9 @@
 //! Each lane has the same bits as a single number. Sines and cosines equal those of the `libm` crate, and are computed
 //! for all eight lanes at once if possible.
 
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, by_squaring, operator};
 use crate::sines::sines;
 use crate::spline::Spline;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The number of lanes that are evaluated at once.
 pub const LANES: usize = 8;
@@ -29,50 +28,11 @@ macro_rules! each {
 }
 pub use each;
 
-impl Add for F64x8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        each!(a = self, b = other => a + b)
-    }
-}
-
-impl Sub for F64x8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        each!(a = self, b = other => a - b)
-    }
-}
-
-impl Mul for F64x8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        each!(a = self, b = other => a * b)
-    }
-}
-
-impl Div for F64x8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        each!(a = self, b = other => a / b)
-    }
-}
-
-impl Neg for F64x8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        each!(a = self => -a)
-    }
-}
+operator!([] F64x8, Add add(self, other) => each!(a = self, b = other => a + b));
+operator!([] F64x8, Sub sub(self, other) => each!(a = self, b = other => a - b));
+operator!([] F64x8, Mul mul(self, other) => each!(a = self, b = other => a * b));
+operator!([] F64x8, Div div(self, other) => each!(a = self, b = other => a / b));
+operator!([] F64x8, Neg neg(self) => each!(a = self => -a));
 
 impl Scalar for F64x8 {
     /// Kernels inline the functions, to compile them for their CPU level.
@@ -136,15 +96,7 @@ impl Scalar for F64x8 {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        let (mut result, mut square, mut left) = (Self::constant(1.0), self, exponent.unsigned_abs());
-        while left > 0 {
-            if left & 1 == 1 {
-                result = result * square;
-            }
-            left >>= 1;
-            square = square * square;
-        }
-        if exponent < 0 { Self::constant(1.0) / result } else { result }
+        by_squaring(self, exponent)
     }
 
     fn spline(self, spline: &Spline, order: usize) -> Self {

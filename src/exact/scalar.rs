@@ -248,6 +248,20 @@ pub fn cross<N: Scalar>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     })
 }
 
+/// Computes a power by repeated squaring, which gives the same bits on each machine.
+#[inline(always)]
+pub(crate) fn by_squaring<N: Scalar>(base: N, exponent: i32) -> N {
+    let (mut result, mut square, mut left) = (N::constant(1.0), base, exponent.unsigned_abs());
+    while left > 0 {
+        if left & 1 == 1 {
+            result = result * square;
+        }
+        left >>= 1;
+        square = square * square;
+    }
+    if exponent < 0 { N::constant(1.0) / result } else { result }
+}
+
 impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -310,22 +324,10 @@ impl Scalar for f64 {
         libm::pow(self, exponent)
     }
 
-    /// Computes the power by repeated squaring, which gives the same bits on each machine.
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
         // The result has the same bits.
-        if exponent == 2 {
-            return self * self;
-        }
-        let (mut result, mut square, mut left) = (1.0, self, exponent.unsigned_abs());
-        while left > 0 {
-            if left & 1 == 1 {
-                result *= square;
-            }
-            left >>= 1;
-            square *= square;
-        }
-        if exponent < 0 { 1.0 / result } else { result }
+        if exponent == 2 { self * self } else { by_squaring(self, exponent) }
     }
 
     fn spline(self, spline: &Spline, order: usize) -> Self {
