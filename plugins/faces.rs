@@ -62,8 +62,6 @@ impl Shader for Faces {
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        let is_sound = diffuse.min_element() >= 0.0;
-        is_sound.then(|| Look { ambient: ambient * self.most(), diffuse: diffuse * self.most(), specular })
+        material.brightest_times(self.most())
     }
 }

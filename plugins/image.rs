@@ -155,10 +155,7 @@ impl Shader for Image {
         self.place(at).floor().min(self.size() - 1.0)
     }
 
-    /// The material's colours are the bounds, times the brightest texel's.
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let (Material { ambient, diffuse, specular, .. }, most) = (material, self.texture.brightest());
-        let look = Look { ambient: most * *ambient, diffuse: most * *diffuse, specular: *specular };
-        (diffuse.min_element() >= 0.0).then_some(look)
+        material.brightest_times(Rgb::splat(self.texture.brightest()))
     }
 }

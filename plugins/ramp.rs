@@ -82,9 +82,6 @@ impl Shader for Ramp {
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        let most = self.colours.iter().fold(Rgb::ZERO, |most, colour| most.max(*colour));
-        let is_sound = diffuse.min_element() >= 0.0;
-        is_sound.then(|| Look { ambient: ambient * most, diffuse: diffuse * most, specular })
+        material.brightest_times(self.colours.iter().fold(Rgb::ZERO, |most, colour| most.max(*colour)))
     }
 }

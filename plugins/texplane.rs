@@ -157,10 +157,7 @@ impl Shader for Textured {
         DVec2::new(column.into(), row.into())
     }
 
-    /// The material's colours are the bounds, times the brightest texel's.
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let (Material { ambient, diffuse, specular, .. }, most) = (material, self.0.texture.brightest());
-        let look = Look { ambient: most * *ambient, diffuse: most * *diffuse, specular: *specular };
-        (diffuse.min_element() >= 0.0).then_some(look)
+        material.brightest_times(Rgb::splat(self.0.texture.brightest()))
     }
 }

@@ -86,8 +86,7 @@ impl<const ON_FLOOR: bool> Shader for Tiles<ON_FLOOR> {
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
+        material.brightest_times(Rgb::ONE)
     }
 }
 

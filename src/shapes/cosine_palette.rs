@@ -72,10 +72,9 @@ impl CosinePalette {
 
     /// Bounds the reflectivities of a shader with these ambient colours and the material's other reflectivities.
     pub fn brightest(&self, material: &Material) -> Option<Look> {
-        let Material { diffuse, specular, .. } = *material;
-        let is_sound = diffuse.min_element() >= 0.0;
         // The largest sum of 1 and a cosine is 2, up to a few ulps, far less than 1e-6.
-        is_sound.then_some(Look { ambient: Rgb::splat(2.000001 * self.brightness), diffuse, specular })
+        let ambient = Rgb::splat(2.000001 * self.brightness);
+        Some(Look { ambient, ..material.brightest_times(Rgb::ONE)? })
     }
 }
 

@@ -65,6 +65,14 @@ impl Material {
         })
     }
 
+    /// Returns bounds of the looks whose ambient and diffuse colours are the material's times a factor of at most `most`;
+    /// `None` where the diffuse light may be negative.
+    pub fn brightest_times(&self, most: Rgb) -> Option<Look> {
+        let Self { ambient, diffuse, specular, .. } = *self;
+        let is_sound = diffuse.min_element() >= 0.0;
+        is_sound.then(|| Look { ambient: ambient * most, diffuse: diffuse * most, specular })
+    }
+
     /// Tells whether lamps show as highlights in the surface, in addition to the light that it scatters. In glass they
     /// do, whatever it transmits.
     pub fn glints(&self) -> bool {
