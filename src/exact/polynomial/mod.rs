@@ -246,7 +246,18 @@ impl<C: Coefficient, const N: usize> Neg for Polynomial<C, N> {
     }
 }
 
+/// Implements functions that are known of constants alone.
+macro_rules! of_constants {
+    ($($function:ident)+) => {$(
+        fn $function(self) -> Self {
+            self.map(Scalar::$function)
+        }
+    )+};
+}
+
 impl<C: Coefficient, const N: usize> Scalar for Polynomial<C, N> {
+    of_constants!(tan exp ln sqrt abs floor step d_step d_floor);
+
     fn constant(value: f64) -> Self {
         Self::about(value, 0.0)
     }
@@ -259,32 +270,8 @@ impl<C: Coefficient, const N: usize> Scalar for Polynomial<C, N> {
         (self.map(Scalar::sin), self.map(Scalar::cos))
     }
 
-    fn tan(self) -> Self {
-        self.map(Scalar::tan)
-    }
-
-    fn exp(self) -> Self {
-        self.map(Scalar::exp)
-    }
-
-    fn ln(self) -> Self {
-        self.map(Scalar::ln)
-    }
-
     fn atan2(self, x: Self) -> Self {
         x.bounds().map_or(Self::unknown(), |x| self.map(|y| y.atan2(x)))
-    }
-
-    fn sqrt(self) -> Self {
-        self.map(Scalar::sqrt)
-    }
-
-    fn abs(self) -> Self {
-        self.map(Scalar::abs)
-    }
-
-    fn floor(self) -> Self {
-        self.map(Scalar::floor)
     }
 
     fn max(self, other: Self) -> Self {
@@ -326,18 +313,6 @@ impl<C: Coefficient, const N: usize> Scalar for Polynomial<C, N> {
             (Some(y), Some(z)) => x.map(|x| Interval::noise([x, y, z], orders)),
             _ => Self::unknown(),
         }
-    }
-
-    fn step(self) -> Self {
-        self.map(Scalar::step)
-    }
-
-    fn d_step(self) -> Self {
-        self.map(Scalar::d_step)
-    }
-
-    fn d_floor(self) -> Self {
-        self.map(Scalar::d_floor)
     }
 
     fn is_zero(self) -> bool {
