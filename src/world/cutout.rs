@@ -6,7 +6,7 @@ use crate::coincidence::ROUNDING;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
-use crate::hittable::{ByDistance, Curvature, Facts, Hittable, Shape, SurfaceHit, TieBreaking};
+use crate::hittable::{ByDistance, Curvature, Facts, Hittable, Shape, SurfaceHit};
 use crate::packets::shader::PacketShader;
 use crate::packets::shape::HitQueries;
 use crate::surface_point::SurfacePoint;
@@ -25,8 +25,6 @@ pub(crate) struct Cutout {
 
 /// Marks a shape about whose hits one thing is proven: they are hits of the whole shape.
 pub(crate) struct ByWhole;
-
-impl TieBreaking for ByWhole {}
 
 impl Cutout {
     /// Makes a shape without what a shader cuts out.

@@ -379,16 +379,3 @@ pub struct ByEquation;
 pub struct ByRoots;
 /// Marks a shape whose hits are found by a formula of the notes, with an equation of the surface that they mean.
 pub struct ByFormula;
-
-/// Whether the order of hits at nearly equal distances is refined.
-pub trait TieBreaking {
-    /// Whether distances are taken as they are, without refinement.
-    const IS_PLAIN: bool = false;
-}
-
-impl TieBreaking for Unproven {}
-impl TieBreaking for ByEquation {}
-impl TieBreaking for ByRoots {}
-impl TieBreaking for ByFormula {
-    const IS_PLAIN: bool = true;
-}

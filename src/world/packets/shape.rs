@@ -13,7 +13,7 @@ use crate::geometry::ray::{Bracket, MISS, Ray, RayBall, RayError, RayRange, Side
 use crate::geometry::ray_packet::{
     Brackets, HitRecordMut, RayPacket, SurfaceInteraction, mark_occluded, merge_nearest, turned,
 };
-use crate::hittable::{Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides, TieBreaking};
+use crate::hittable::{Bracketed, ByBracket, ByDistance, Facts, Hittable, Shape, Sides};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::LANES;
 
@@ -195,7 +195,7 @@ impl<T: Bracketed, P> ScalarIntersect for Shape<T, ByBracket, P> {
 
 /// The bracket follows from the author's distance, and from whether the shape touches the ray's origin. In a copy's
 /// coordinates, too, the hit at the author's distance counts.
-impl<T: Hittable, P: TieBreaking> ScalarIntersect for Shape<T, ByDistance, P>
+impl<T: Hittable, P> ScalarIntersect for Shape<T, ByDistance, P>
 where
     Self: HitQueries,
 {
@@ -208,7 +208,7 @@ where
 
     #[inline(always)]
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
-        if P::IS_PLAIN {
+        if self.is_of_the_notes() {
             return Bracket::exactly(self.shape.distance(ray, range));
         }
         let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
