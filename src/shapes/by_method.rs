@@ -5,7 +5,7 @@ use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::certify::{Enclosure, Precision, Premise};
-use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
+use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange};
 use tabray_world::geometry::sight::Sight;
 use tabray_world::hittable::{Facts, Hittable};
 use tabray_world::packets::shape::{HitQueries, ScalarIntersect, by_distance};
@@ -53,10 +53,6 @@ impl ScalarIntersect for WithMethod {
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket {
         let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
         by_distance(ray, range, is_on_surface, |range| Some(self.distance(ray, range)))
-    }
-
-    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }
 

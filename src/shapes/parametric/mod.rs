@@ -139,10 +139,6 @@ impl ScalarIntersect for ParametricShape {
             _ => Bracket::UNKNOWN,
         }
     }
-
-    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
-    }
 }
 
 /// The number of plain rays that take as long as a search.

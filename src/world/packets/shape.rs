@@ -120,8 +120,11 @@ pub trait ScalarIntersect: Send + Sync {
     fn t_bounds(&self, ray: &RayBall, range: &RayRange) -> Bracket;
 
     /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
-    /// more than plain arithmetic.
-    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
+    /// more than plain arithmetic. By default, it is the author's.
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.author().distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+    }
 
     /// Tells whether eight rays certainly miss the shape, where that is known in less time than their brackets.
     #[inline(always)]
@@ -213,11 +216,6 @@ where
         }
         let is_on_surface = || self.is_on_surface(ray.origin, range.origin_error);
         by_distance(ray, range, is_on_surface, |range| Some(self.shape.distance(ray, range)))
-    }
-
-    #[inline(always)]
-    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }
 

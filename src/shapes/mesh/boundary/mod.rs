@@ -191,10 +191,6 @@ impl<A: NotClassic> ScalarIntersect for Boundary<A> {
             (!is_from_camera || self.mesh.surface.is_off_edges(ray, far)).then_some(distance)
         })
     }
-
-    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
-    }
 }
 
 impl<A: NotClassic> HitQueries for Boundary<A> {
