@@ -17,7 +17,7 @@ use tabray_world::geometry::frame::Frame;
 use tabray_world::geometry::ray::{Bracket, Ray, RayBall, RayRange, Side};
 use tabray_world::geometry::ray_packet::{RayPacket, SurfaceInteraction, split};
 use tabray_world::geometry::sight::Line;
-use tabray_world::hittable::{Certified, Facts, Hittable, Searched, Sides};
+use tabray_world::hittable::{Certified, Facts, Hittable, Sides};
 use tabray_world::packets::shape::{PacketIntersect, by_distance, queries_by_equation};
 use tabray_world::simd::cpu::Cpu;
 
@@ -125,17 +125,11 @@ impl Certified for InFrame<Revolution> {
     }
 }
 
-impl Searched for InFrame<Revolution> {
-    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {
-        self.surface.first_hit_by(method, &self.frame, ray, range)
-    }
-}
-
 queries_by_equation!(
     [] InFrame<Revolution>,
     |self| self,
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
-        Some(Searched::distance_by(self, method, ray, range))
+        Some(self.surface.first_hit_by(method, &self.frame, ray, range))
     }
 );
 
