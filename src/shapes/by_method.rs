@@ -1,7 +1,6 @@
 //! Shapes whose hits are found by another root-finding method, for comparison.
 
 use glam::DVec3;
-use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::roots::Method;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::certify::{Enclosure, Precision, Premise};
@@ -61,19 +60,11 @@ impl HitQueries for WithMethod {
         self.shape.is_on_surface(at, error)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         self.shape.premises(of, each);
     }
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.shape.certify(sight, precision)
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
+    fn certify(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+        self.shape.certify_part(sight, precision)
     }
 }

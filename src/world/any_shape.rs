@@ -140,7 +140,7 @@ impl AnyShape {
     /// Returns what is proven about a ray's first hit, and the part of the shape that is hit, of which
     /// [`surface_hit`](Self::surface_hit) tells the normal, u and v, and the face.
     pub fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-        let (found, part) = self.shape.certify_part(sight, precision);
+        let (found, part) = self.shape.certify(sight, precision);
         let is_open = precision == Precision::Octuple && matches!(found, Enclosure::Doubtful(_));
         (if is_open && self.is_parallel(sight) { Enclosure::Misses } else { found }, part)
     }

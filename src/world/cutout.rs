@@ -12,7 +12,6 @@ use crate::packets::shape::HitQueries;
 use crate::surface_point::SurfacePoint;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
-use tabray_exact::double_double::DoubleDouble;
 
 /// The maximum number of cut parts that a ray passes on its way. Beyond them, it hits nothing.
 const MAX_PASSED: usize = 1 << 16;
@@ -139,10 +138,6 @@ impl HitQueries for Shape<Cutout, ByDistance, ByWhole> {
         shape.is_on_surface(at, error) && self.shape.passes(at, -shape.normal(at)).is_none()
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         self.shape.shape.premises(of, each);
         each("cutout", Premise::NoEquation);
@@ -153,10 +148,12 @@ impl HitQueries for Shape<Cutout, ByDistance, ByWhole> {
     }
 
     /// A ray that misses the whole shape misses what is left of it.
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        match self.shape.shape.certify(sight, precision) {
+    fn certify(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+        let of_whole = self.shape.shape.certify(sight, precision);
+        let left = match of_whole {
             Enclosure::Hits(at) | Enclosure::Edge(at) => Enclosure::Doubtful(at.low),
             open => open,
-        }
+        };
+        (left, 0)
     }
 }

@@ -169,7 +169,7 @@ impl HitQueries for Counted {
         self.packets().premises(of, each);
     }
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+    fn certify(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         count(PROOF[usize::from(precision == Precision::Octuple)]);
         self.packets().certify(sight, precision)
     }

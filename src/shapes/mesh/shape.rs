@@ -216,11 +216,7 @@ impl<A: NotClassic> HitQueries for Mesh<A> {
         self.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
     }
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.certify_part(sight, precision).0
-    }
-
-    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+    fn certify(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         self.surface.certify::<A>(sight, precision)
     }
 

@@ -7,16 +7,13 @@ use super::tree::halves;
 use glam::DVec3;
 use std::cell::Cell;
 use tabray_exact::affine::Affine;
-use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::dual::Dual;
 use tabray_exact::interval::{Float, Fraction, Interval};
 use tabray_exact::scalar::{cross, dot};
 use tabray_world::certify::{
-    self, Enclosure, FootprintHit, HitEnclosure, HitProofs, OverFootprint, Precision, Premise, ProofMethods,
-    coarse,
+    FootprintHit, HitEnclosure, HitProofs, OverFootprint, Premise, ProofMethods, coarse,
 };
-use tabray_world::geometry::ray::Ray;
-use tabray_world::geometry::sight::{Line, Sight};
+use tabray_world::geometry::sight::Line;
 use tabray_world::packets::shape::HitQueries;
 
 /// The maximum number of parts in which normals are enclosed.
@@ -153,15 +150,7 @@ impl HitQueries for ParametricShape {
         self.is_near(at, error)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
     fn premises(&self, _of: &'static str, _each: &mut dyn FnMut(&'static str, Premise)) {}
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_part(self, sight, precision).0
-    }
 
     fn proven(&self) -> Option<&dyn ProofMethods> {
         Some(self)

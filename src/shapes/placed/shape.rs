@@ -3,7 +3,6 @@
 use super::image_plane::MaxZ;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
-use tabray_exact::double_double::DoubleDouble;
 use tabray_world::body::Body;
 use tabray_world::certify::{Enclosure, Precision, Premise, ProofMethods};
 use tabray_world::coincidence::{CLOSE, ROUNDING, close};
@@ -313,15 +312,7 @@ impl HitQueries for Placed {
         own.placed(self.placement)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.certify_part(sight, precision).0
-    }
-
-    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+    fn certify(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
         let (found, part) = self.body.shape.certify_part(&sight.within(self.placement), precision);
         (self.max_z.kept_enclosure(sight, found), part)
     }

@@ -5,11 +5,10 @@ use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_world::any_shape::AnyShape;
 use tabray_world::body::Part;
-use tabray_world::certify::{self, Enclosure, Precision, Premise, ProofMethods};
+use tabray_world::certify::{Premise, ProofMethods};
 use tabray_world::coincidence::{self, CLOSE, MIN_COSINE, ROUNDING};
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
-use tabray_world::geometry::sight::Sight;
 use tabray_world::hittable::{Curvature, Facts, Hittable, SurfaceHit};
 use tabray_world::packets::shape::{HitQueries, by_distance};
 use tabray_world::solid::Tree;
@@ -419,14 +418,6 @@ impl HitQueries for SolidPart {
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         self.own().packets().fine_distance(ray, distance)
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.certify_part(sight, precision).0
-    }
-
-    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-        certify::first_part(self, sight, precision)
     }
 
     fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {

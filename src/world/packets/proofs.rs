@@ -10,6 +10,7 @@ use crate::hittable::{
 };
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
+use tabray_exact::interval::{Float, Fraction};
 use tabray_exact::roots::Method;
 
 /// A shape about whose hits something may be proven.
@@ -38,18 +39,18 @@ pub trait HitQueries: Send + Sync {
 
     /// Returns the distance of the hit near `distance` in double-double arithmetic, or `None` where no such distance
     /// can be computed.
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
+        None
+    }
 
     /// Passes on the premises of proofs about the shape, each with the name of its entity type. That is `of`, or, where
     /// the shape is made of other shapes, as a copy or a solid is, the type of the other shape.
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise));
 
-    /// Returns what is proven about a ray's first hit.
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
-
-    /// Returns what is proven about a ray's first hit, and the part of the shape that is hit.
-    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-        (self.certify(sight, precision), 0)
+    /// Returns what is proven about a ray's first hit, and the part of the shape that is hit: 0 of a shape of one part.
+    fn certify(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+        let open = (Enclosure::Doubtful(Fraction::of(0.0)), 0);
+        self.proven().map_or(open, |proven| certify::first_part(proven, sight, precision))
     }
 
     /// Returns the surface of the part that a proof names, where a ray hits it at a distance in world units; without a
@@ -91,10 +92,6 @@ impl<T: Hittable, S> HitQueries for Shape<T, S, Unproven> {
         is_met_within(&self.shape, at, error)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         each(of, Premise::NoEquation);
         if self.shape.facts().bounds.is_some() {
@@ -102,8 +99,8 @@ impl<T: Hittable, S> HitQueries for Shape<T, S, Unproven> {
         }
     }
 
-    fn certify(&self, sight: &Sight, _precision: Precision) -> Enclosure {
-        certify::first_hit_in(self.shape.facts().widened(), &sight.line()).into()
+    fn certify(&self, sight: &Sight, _precision: Precision) -> (Enclosure, usize) {
+        (certify::first_hit_in(self.shape.facts().widened(), &sight.line()).into(), 0)
     }
 }
 
@@ -116,16 +113,12 @@ impl<T: Hittable + Equation, S> HitQueries for Shape<T, S, ByFormula> {
         is_met_within(&self.shape, at, error)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         assumed(&self.shape, of, each);
     }
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(&self.shape, sight, precision)
+    fn certify(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
+        (certify::first_hit(&self.shape, sight, precision), 0)
     }
 }
 
@@ -171,8 +164,8 @@ macro_rules! queries_by_equation {
                 &$self,
                 sight: &$crate::geometry::sight::Sight,
                 precision: $crate::certify::Precision,
-            ) -> $crate::certify::Enclosure {
-                $crate::certify::first_hit($shape, sight, precision)
+            ) -> ($crate::certify::Enclosure, usize) {
+                ($crate::certify::first_hit($shape, sight, precision), 0)
             }
 
             fn proven(&$self) -> Option<&dyn $crate::certify::ProofMethods> {

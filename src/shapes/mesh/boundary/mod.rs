@@ -15,11 +15,10 @@ use std::sync::Arc;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_world::accuracy::{Accuracy, Exact, NotClassic, Strict};
 use tabray_world::any_shape::AnyShape;
-use tabray_world::certify::{self, Assumption, Enclosure, Precision, Premise, ProofMethods};
+use tabray_world::certify::{Assumption, Premise, ProofMethods};
 use tabray_world::coincidence::{CLOSE, ROUNDING, close};
 use tabray_world::geometry::aabb::Aabb;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
-use tabray_world::geometry::sight::Sight;
 use tabray_world::hittable::{Facts, Hittable, SurfaceHit};
 use tabray_world::packets::shape::{HitQueries, ScalarIntersect, by_distance};
 
@@ -211,14 +210,6 @@ impl<A: NotClassic> HitQueries for Boundary<A> {
 
     fn premises(&self, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
         self.assumes(&mut |assumption| each(of, Premise::Assumed(assumption)));
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.certify_part(sight, precision).0
-    }
-
-    fn certify_part(&self, sight: &Sight, precision: Precision) -> (Enclosure, usize) {
-        certify::first_part(self, sight, precision)
     }
 
     fn surface_hit(&self, ray: &Ray, distance: f64, at: DVec3, part: Option<usize>) -> Option<SurfaceHit> {
