@@ -2,7 +2,8 @@
 
 use super::material::EMISSION;
 use tabray::prelude::*;
-use tabray::world::coat::{Coat, fresnel};
+use tabray::world::coat::{ClearCoat, fresnel};
+use tabray::world::number::Number;
 
 static BODY: Pparm<Rgb> = Pparm::or("colour", "the colour of the body under the coat", Rgb::splat(0.5))
     .alias(&["color"])
@@ -40,13 +41,13 @@ inventory::submit! {
 pub struct Plastic {
     index: f64,
     roughness: f64,
-    coat: Coat,
+    coat: ClearCoat,
 }
 
 impl Plastic {
     /// Makes a coat of a refractive index from 1 to 4, with a roughness from 0 to 1.
     pub fn new(index: f64, roughness: f64) -> Self {
-        Self { index, roughness, coat: Coat::new(index, roughness) }
+        Self { index, roughness, coat: ClearCoat::new(index, roughness) }
     }
 }
 
@@ -56,8 +57,17 @@ impl Interface for Plastic {
         Crossing { reflected: Rgb::splat(fresnel(self.index, -dir.dot(normal))), onward: None }
     }
 
-    fn coat(&self) -> Option<&Coat> {
-        Some(&self.coat)
+    fn is_coat(&self) -> bool {
+        true
+    }
+
+    /// In pictures alone: what the coat reflects is summed over facets in plain numbers.
+    fn passed<N: Number>(&self, cosine: N) -> Option<N> {
+        cosine.plain().map(|cosine| N::constant(self.coat.passed(cosine)))
+    }
+
+    fn body<N: Number>(&self, colour: [N; 3]) -> [N; 3] {
+        self.coat.body(colour)
     }
 
     fn roughness(&self) -> f64 {

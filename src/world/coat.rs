@@ -7,8 +7,9 @@
 //! with the mean of E over all directions, by their cosines. So a white body under any coat reflects all light. This is
 //! `plastic` and `roughplastic` of Mitsuba 3 with `nonlinear` (Jakob, 2022).
 
-use crate::material::Rgb;
+use crate::number::Number;
 use std::f64::consts::TAU;
+use tabray_exact::scalar::per_axis;
 
 /// The number of parts of the cosine's range between whose ends the reflected fraction is interpolated.
 const PARTS: usize = 64;
@@ -18,7 +19,7 @@ const FACETS: usize = 48;
 
 /// A clear coat over a matt body.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Coat {
+pub struct ClearCoat {
     /// The fractions that the coat reflects, by the cosine of the angle to the normal in parts of `1 / PARTS`.
     reflected: [f64; PARTS + 1],
     /// The square of the refractive index.
@@ -27,7 +28,7 @@ pub struct Coat {
     inner: f64,
 }
 
-impl Coat {
+impl ClearCoat {
     /// Makes a coat of a refractive index of at least 1, with a roughness from 0 to 1.
     pub fn new(index: f64, roughness: f64) -> Self {
         let reflected = std::array::from_fn(|part| {
@@ -58,8 +59,9 @@ impl Coat {
 
     /// Returns the diffuse reflectivity of a body of this colour under the coat, for light that has passed through it
     /// and before it passes again.
-    pub fn body(&self, colour: Rgb) -> Rgb {
-        colour / (self.square * (Rgb::ONE - self.inner * colour))
+    pub fn body<N: Number>(&self, colour: [N; 3]) -> [N; 3] {
+        let [square, inner, one] = [self.square, self.inner, 1.0].map(N::constant);
+        per_axis(|channel| colour[channel] / (square * (one - inner * colour[channel])))
     }
 }
 
@@ -104,14 +106,14 @@ mod tests {
     #[test]
     fn a_white_body_under_any_coat_reflects_all_light() {
         for (index, roughness) in [(1.5, 0.0), (1.33, 0.3), (2.4, 0.0), (1.5, 0.8), (1.0, 0.0)] {
-            let coat = Coat::new(index, roughness);
+            let coat = ClearCoat::new(index, roughness);
             let count = 10_000;
             let cosines = (0..count).map(|part| (f64::from(part) + 0.5) / f64::from(count));
             let received: f64 =
                 cosines.map(|cosine| 2.0 * cosine * coat.passed(cosine)).sum::<f64>() / f64::from(count);
             for cosine in [0.05, 0.3, 0.77, 1.0] {
                 let passed = coat.passed(cosine);
-                let whole = 1.0 - passed + passed * received * coat.body(Rgb::ONE).x;
+                let whole = 1.0 - passed + passed * received * coat.body([1.0; 3])[0];
                 assert!((whole - 1.0).abs() < 1e-6, "{index}, {roughness}, {cosine}: {whole}");
             }
         }

@@ -1,6 +1,5 @@
 //! Interfaces: how light continues at a surface. A material may have one.
 
-use crate::coat::Coat;
 use crate::geometry::ray::Side;
 use crate::number::{Known, Number};
 use glam::DVec3;
@@ -8,7 +7,7 @@ use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
-use tabray_exact::interval::Wide;
+use tabray_exact::interval::{Interval, Wide};
 use tabray_exact::scalar::{Scalar, constants, dot, per_axis};
 
 /// How light continues at a surface: which fraction is reflected, and in which direction the rest is transmitted.
@@ -43,10 +42,28 @@ pub trait Interface: Send + Sync {
         Law::Unknown
     }
 
-    /// Returns the clear coat that the interface is, over a matt body; `None` for other interfaces. It is the same in every
-    /// call. The body scatters what the coat lets through, and nothing is transmitted.
-    fn coat(&self) -> Option<&Coat> {
-        None
+    /// Tells whether the interface is a coat over a matt body. The body scatters what the coat lets through, and nothing
+    /// is transmitted. The answer is the same in every call.
+    fn is_coat(&self) -> bool {
+        false
+    }
+
+    /// Returns the fraction of light, from 0 to 1, that passes through a [coat](Self::is_coat) at an angle to the normal,
+    /// given its cosine; `None` where it is open, which it is not in plain numbers.
+    fn passed<N: Number>(&self, _cosine: N) -> Option<N>
+    where
+        Self: Sized,
+    {
+        Some(N::constant(1.0))
+    }
+
+    /// Returns the diffuse reflectivity of a body of this colour under a [coat](Self::is_coat), for light that has passed
+    /// through it and before it passes again.
+    fn body<N: Number>(&self, colour: [N; 3]) -> [N; 3]
+    where
+        Self: Sized,
+    {
+        colour
     }
 
     /// Returns how rough the surface is: 0 if it is smooth, and at most 1. It is the same in every call. Rays cross
@@ -189,12 +206,31 @@ pub struct Crossing<C = DVec3> {
     pub onward: Option<C>,
 }
 
+/// A coat of any type, asked in one number. Every [`Interface`] is one.
+pub trait Coat<N> {
+    /// Calls [`Interface::passed`].
+    fn passes(&self, cosine: N) -> Option<N>;
+
+    /// Calls [`Interface::body`].
+    fn covers(&self, colour: [N; 3]) -> [N; 3];
+}
+
+impl<I: Interface, N: Number> Coat<N> for I {
+    fn passes(&self, cosine: N) -> Option<N> {
+        self.passed(cosine)
+    }
+
+    fn covers(&self, colour: [N; 3]) -> [N; 3] {
+        self.body(colour)
+    }
+}
+
 /// Any [`Interface`].
 #[derive(Clone)]
 pub struct AnyInterface(Arc<dyn Comparable>);
 
-/// An interface that can be compared with any other.
-trait Comparable: Interface {
+/// An interface that can be compared with any other, as a coat in any of these numbers.
+trait Comparable: Interface + Coat<f64> + Coat<Interval> {
     fn as_any(&self) -> &dyn Any;
     fn is(&self, other: &dyn Any) -> bool;
     fn as_interface(&self) -> &(dyn Interface + 'static);
@@ -218,6 +254,11 @@ impl AnyInterface {
     /// Wraps an interface.
     pub fn new(interface: impl Interface + PartialEq + 'static) -> Self {
         Self(Arc::new(interface))
+    }
+
+    /// Returns the coat over a matt body that the interface is, in plain numbers and in intervals, if it is one.
+    pub fn coat(&self) -> Option<(&dyn Coat<f64>, &dyn Coat<Interval>)> {
+        self.is_coat().then_some((&*self.0, &*self.0))
     }
 }
 

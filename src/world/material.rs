@@ -1,8 +1,8 @@
 //! Colours, and how a surface reflects light.
 
-use crate::coat::Coat;
-use crate::interface::{AnyInterface, Medium};
+use crate::interface::{AnyInterface, Coat, Medium};
 use glam::DVec3;
+use tabray_exact::interval::Interval;
 
 /// A colour or a reflectivity: red, green and blue. 1 is as bright as an image can show; there is no upper limit.
 pub type Rgb = DVec3;
@@ -84,14 +84,24 @@ impl Material {
         self.interface.as_ref().and_then(|interface| interface.medium())
     }
 
-    /// Returns the clear coat over the surface, if it has one.
-    pub fn coat(&self) -> Option<&Coat> {
-        self.interface.as_ref().and_then(|interface| interface.coat())
+    /// Returns the coat over the surface, if it has one.
+    pub fn coat(&self) -> Option<&dyn Coat<f64>> {
+        self.interface.as_ref().and_then(|interface| interface.coat()).map(|(plain, _)| plain)
+    }
+
+    /// Returns the coat over the surface for proofs, if it has one.
+    pub fn enclosed_coat(&self) -> Option<&dyn Coat<Interval>> {
+        self.interface.as_ref().and_then(|interface| interface.coat()).map(|(_, enclosed)| enclosed)
+    }
+
+    /// Returns the diffuse reflectivity of a body of this colour under the surface's coat.
+    pub fn under_coat(&self, colour: Rgb) -> Rgb {
+        self.coat().map_or(colour, |coat| coat.covers(colour.to_array()).into())
     }
 
     /// Returns a look with the diffuse reflectivity under the surface's coat.
     pub fn coated(&self, look: Look) -> Look {
-        Look { diffuse: self.coat().map_or(look.diffuse, |coat| coat.body(look.diffuse)), ..look }
+        Look { diffuse: self.under_coat(look.diffuse), ..look }
     }
 
     /// Returns how rough the surface is for the rays that continue from it, from 0 to 1.

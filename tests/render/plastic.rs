@@ -1,9 +1,13 @@
-//! Plastic: a matt body under a clear coat.
+//! Plastic, and other matt bodies under a coat.
 
 use crate::common::{model, render};
 use glam::DVec3;
+use std::sync::Arc;
+use tabray::prelude::{AnyInterface, Interface, Law, Material, Number};
 use tabray::render::plan::Plan;
 use tabray::render::trace;
+use tabray::scene::model::Object;
+use tabray::tools::colours::{Prover, Verdict};
 
 /// Returns the mean of an image's pixels, before they become bytes.
 fn mean(text: &str) -> DVec3 {
@@ -85,4 +89,58 @@ fn textures_colour_the_body() {
     let textured = render(&scene("plastic m { colour 0.7 0.4 0.2 }", "shader pattern"));
     let same = even.pixels().zip(textured.pixels()).filter(|(one, other)| one == other).count();
     assert!(same > 32 * 24 / 8 && same < 32 * 24 * 7 / 8, "{same}");
+}
+
+/// A coat that absorbs light, more of it at flat angles.
+#[derive(PartialEq)]
+struct Varnish;
+
+impl Interface for Varnish {
+    fn law(&self) -> Law {
+        Law::metal(DVec3::ZERO, 0.0)
+    }
+
+    fn is_coat(&self) -> bool {
+        true
+    }
+
+    fn passed<N: Number>(&self, cosine: N) -> Option<N> {
+        let (zero, one) = (N::constant(0.0), N::constant(1.0));
+        Some((-N::constant(0.3) / cosine.max(zero).min(one)).exp().max(zero).min(one))
+    }
+}
+
+#[test]
+fn the_rule_of_a_coat_holds_in_pictures_and_in_proofs() {
+    for lamp in [
+        "light lamp { location 2 4 2 emissivity 30 30 30 }",
+        "area_light lamp { location 2 4 2 target 0 0 0 dimensions 1 1 emissivity 9 9 9 }",
+        "sphere_light lamp { location 2 4 2 radius 0.5 emissivity 9 9 9 }",
+    ] {
+        for samples in [1, 4] {
+            let mut model = model(&format!(
+                "look_at eye {{ pixeldim 32 24 position 0 1 5 target 0 0 0 angle 40 samples {samples} }}
+                 {lamp} material m {{ ambient 0.1 0.1 0.1 diffuse 0.7 0.4 0.2 }}
+                 sphere ball {{ material m center 0 0 0 radius 1 }} plane floor {{ material m normal 0 1 0 point 0 -1 0 }}"
+            ));
+            let bare = render(&model);
+            let is_ball =
+                |object: &&mut Object| object.shape.is_two_sided() && object.material.diffuse != DVec3::ZERO;
+            let ball = model.objects.iter_mut().find(is_ball).expect("the ball");
+            let coat = Some(AnyInterface::new(Varnish));
+            ball.material = Arc::new(Material { interface: coat, ..(*ball.material).clone() });
+            assert!(render(&model) != bare, "{lamp}");
+            let plan = Plan::new(&model);
+            let prover = Prover::new(&plan);
+            let of = |index: usize| prover.traced(index % 32, index / 32).verdict();
+            let verdicts: Vec<Verdict> = (0..32 * 24).map(of).collect();
+            let count = |one: Verdict| verdicts.iter().filter(|verdict| **verdict == one).count();
+            assert_eq!(count(Verdict::Contradicted), 0, "{lamp}, {samples}");
+            assert!(
+                count(Verdict::Proven) > 32 * 24 * 19 / 20,
+                "{lamp}, {samples}: {}",
+                count(Verdict::Proven)
+            );
+        }
+    }
 }

@@ -109,7 +109,8 @@ impl<N: Enclosing> Shining<'_, N> {
             return Some([N::constant(0.0); 3]);
         }
         let cosine = rise / dot(*toward, *toward).sqrt();
-        let mut scattered = per_axis(|channel| self.surface.diffuse[channel] * cosine);
+        let received = self.surface.through_coat(self.scene, cosine, cosine)?;
+        let mut scattered = per_axis(|channel| self.surface.diffuse[channel] * received);
         if let Some(strength) = self.highlight(*toward) {
             scattered = per_axis(|channel| scattered[channel] + self.surface.specular[channel] * strength);
         }
@@ -135,8 +136,9 @@ impl<N: Enclosing> Shining<'_, N> {
         // The part above the horizon adds no more than the whole light adds to a surface that faces it.
         let cosine = if is_whole { rise / round.distance } else { part(n(1.0)) };
         let [facing, all] = round.light;
-        let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine * facing);
         let toward = round.disc();
+        let received = surface.through_coat(self.scene, cosine, dot(unit(toward), surface.normal))?;
+        let mut scattered = per_axis(|channel| surface.diffuse[channel] * received * facing);
         if let Some(strength) = self.highlight(toward) {
             let strength = part(strength) * all;
             scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);

@@ -60,6 +60,7 @@ pub(super) fn contribution<N: Enclosing>(
         sent = per_axis(|channel| sent[channel] * factor);
     }
     let received = rules.received(cosine, N::constant(1.0) / distance);
+    let received = surface.through_coat(scene, received, cosine)?;
     let mut scattered = per_axis(|channel| surface.diffuse[channel] * received);
     if has_glint {
         let half = per_axis(|axis| toward[axis] / distance - dir[axis]);

@@ -287,11 +287,18 @@ impl<'s> EnclosingTracer<'s> {
     /// Encloses the light of points themselves, without that of continued rays.
     fn own<N: Enclosing>(&self, ray: &Ray<N>, travelled: N, surface: &HitPoints<N>) -> Option<Colour<N>> {
         let toward = per_axis(|axis| ray.path.line.dir[axis] / ray.length);
-        let mut colour = surface.ambient;
+        let material = &self.scene.model.objects[surface.place.object].material;
+        let (mut colour, mut diffuse) = (surface.ambient, surface.diffuse);
+        if let Some(coat) = material.enclosed_coat() {
+            let passed = surface.through_coat(self.scene, N::constant(1.0), -dot(toward, surface.normal))?;
+            let body = coat.covers(diffuse.map(N::coarse));
+            diffuse = per_axis(|channel| N::enclosing(Interval::from_f64(body[channel])) * passed);
+        }
         if let Some(most) = self.scene.depth.and_then(|depth| depth.scattered.first()) {
             // The light that reaches a matt surface from others is only bounded.
             let LightRange { low, high } = *most;
-            let is_open = self.is_by_chance() || !low.is_finite() || !high.is_finite();
+            let is_coated = material.coat().is_some();
+            let is_open = self.is_by_chance() || is_coated || !low.is_finite() || !high.is_finite();
             if is_open && !is_black(&surface.diffuse) {
                 return None;
             }
@@ -302,9 +309,9 @@ impl<'s> EnclosingTracer<'s> {
                 });
             }
         }
-        let alone: Colour<N> = constants(self.scene.model.objects[surface.place.object].material.highlight);
+        let alone: Colour<N> = constants(material.highlight);
         let specular = per_axis(|channel| surface.specular[channel] + alone[channel]);
-        let lit = HitPoints { specular, ..*surface };
+        let lit = HitPoints { diffuse, specular, ..*surface };
         for index in self.scene.lights {
             let seen = (*index, self.lights);
             let added = match self.scene.model.lights[*index].value.emitter() {

@@ -170,6 +170,15 @@ impl<N: Enclosing> HitPoints<N> {
         Some(Self { normal, geometric_normal: Some(self.geometric_normal.unwrap_or(own)), ..*self })
     }
 
+    /// Encloses what the coat of the points' material lets pass of light at angles to their normals, given their cosines;
+    /// `None` where that is open.
+    pub fn through_coat(&self, scene: &EnclosedScene, light: N, cosine: N) -> Option<N> {
+        match scene.model.objects[self.place.object].material.enclosed_coat() {
+            None => Some(light),
+            Some(coat) => Some(light * N::enclosing(Interval::from_f64(coat.passes(cosine.coarse())?))),
+        }
+    }
+
     /// Returns how rays along these unit vectors continue at an interface; `None` where that is open.
     pub fn crossing(&self, law: Law, dir: [N; 3]) -> Option<Crossing<[N; 3]>> {
         let cross = |normal| law.cross(dir, normal, self.is_inside);

@@ -62,8 +62,8 @@ impl Tracer<'_, '_> {
     pub(super) fn diffuses(&self, surface: &Surface, count: usize, diffuse: &mut VectorList) -> bool {
         let Object { material, shader, .. } = &self.model.objects[surface.index];
         let any = shader.diffuses(self.cpu, material, surface.points(count), diffuse.resized(count));
-        if let Some(coat) = material.coat() {
-            (0..count).for_each(|lane| diffuse.set(lane, coat.body(diffuse.get(lane))));
+        if material.coat().is_some() {
+            (0..count).for_each(|lane| diffuse.set(lane, material.under_coat(diffuse.get(lane))));
         }
         any
     }

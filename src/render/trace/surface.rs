@@ -200,7 +200,8 @@ impl Surface {
     pub fn passed_by_coat(&self, material: &Material, lane: usize, dir: DVec3, from: DVec3) -> f64 {
         let Some(coat) = material.coat() else { return 1.0 };
         let normal = self.smooth_normal(lane);
-        coat.passed(from.dot(normal)) * coat.passed(-dir.dot(normal))
+        let passed = |cosine| coat.passes(cosine).unwrap_or(0.0);
+        passed(from.dot(normal)) * passed(-dir.dot(normal))
     }
 
     /// Tells whether rays leave a point inside of a medium that absorbs light.

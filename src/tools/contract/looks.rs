@@ -284,6 +284,12 @@ pub fn material(material: &Material, draw: &mut Draw) -> Result<(), Fault> {
     for _ in 0..PLACES {
         let (dir, normal) = (draw.direction(), draw.direction());
         let normal = if dir.dot(normal) > 0.0 { -normal } else { normal };
+        let passed = material.coat().map_or(Some(1.0), |coat| coat.passes(-dir.dot(normal)));
+        if !passed.is_some_and(|part| (0.0..=1.0).contains(&part)) {
+            let found =
+                format!("its coat lets pass {passed:?} of the light along {dir} to a normal {normal}");
+            return Err(Promise::LightGoesOn.fault(found));
+        }
         for side in [Side::Outside, Side::Inside] {
             let crossing = interface.cross(dir, normal, side);
             let Crossing { reflected, onward } = crossing;
