@@ -60,7 +60,7 @@ pub enum Extent<'e> {
     /// The points of a ball's surface, chosen by [`Ball::sample`].
     Ball(Ball),
     /// The directions around a unit vector, chosen by [`in_cone`]. A surface that faces this vector gets the light that
-    /// `enclose` returns.
+    /// is [sent](crate::light::Light::sent).
     Cone {
         /// The middle.
         axis: DVec3,
