@@ -26,7 +26,8 @@ impl AlongLines {
         program.filter(|_| values.list.iter().all(is_known)).map(Self)
     }
 
-    /// Returns the values at nodes of lines in a box of a polynomial of this degree; see [`Nodes::new`].
+    /// Prepares a formula that is a polynomial of this degree along lines in a box, given its low and its high corner.
+    /// Returns `None` if it is not, or if it is too long.
     pub fn nodes(&self, degree: usize, corners: [[f64; 3]; 2]) -> Option<Nodes> {
         Nodes::new(&self.0, degree, corners)
     }

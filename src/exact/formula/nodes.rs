@@ -84,8 +84,7 @@ pub struct NearLine {
 }
 
 impl Nodes {
-    /// Prepares a formula that is a polynomial of this degree along lines in a box. Returns `None` if it is not, or if
-    /// it is too long.
+    /// See [`AlongLines::nodes`](super::along::AlongLines::nodes).
     pub(super) fn new(program: &Program, degree: usize, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
         let within = per_axis(|axis| {
             let slack = AROUND * (high[axis] - low[axis]);
