@@ -14,6 +14,8 @@ pub struct Command {
     group: Group,
     /// The places in the help of its group, and among all commands in what shells and manuals are told.
     places: [u8; 2],
+    /// Whether it watches `--time-limit` by itself from its beginning.
+    pub(crate) keeps_time_limit: bool,
     action: &'static dyn Action,
     place: &'static Location<'static>,
 }
@@ -110,12 +112,19 @@ impl Command {
         group: Group,
         action: &'static Run<A, E>,
     ) -> Self {
-        Self { name, group, places: [u8::MAX; 2], action, place: Location::caller() }
+        let (places, keeps_time_limit) = ([u8::MAX; 2], false);
+        Self { name, group, places, keeps_time_limit, action, place: Location::caller() }
     }
 
     /// Gives the command its places in the help of its group, and among all commands for shells and manuals.
     pub const fn placed(mut self, in_help: u8, among_all: u8) -> Self {
         self.places = [in_help, among_all];
+        self
+    }
+
+    /// Leaves it to the command to watch `--time-limit`, from its beginning.
+    pub const fn keeping_time_limit(mut self) -> Self {
+        self.keeps_time_limit = true;
         self
     }
 

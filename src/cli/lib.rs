@@ -147,7 +147,8 @@ fn chosen() -> ExitCode {
     let chosen = chosen.map(|(name, matches)| {
         (Command::named(name).expect("clap knows the registered commands alone"), matches)
     });
-    if let Err(failure) = time_limit::watch() {
+    let is_kept = chosen.is_some_and(|(command, _)| command.keeps_time_limit);
+    if !is_kept && let Err(failure) = time_limit::watch() {
         return report(&failure);
     }
     match chosen {

@@ -85,7 +85,7 @@ Examples:
   tabray render ball.ray -o big.png --part 1/4             # then 2/4 to 4/4, and `merge`";
 
 inventory::submit! {
-    Command::new("render", Group::First, &Run(run)).placed(3, 0)
+    Command::new("render", Group::First, &Run(run)).placed(3, 0).keeping_time_limit()
 }
 
 fn run(registry: &Registry, mut args: Args) -> Result<(), Failure> {

@@ -1,4 +1,5 @@
-//! `--time-limit`, for every command. A render, a chart and a choice keep to it by themselves, and keep what is done.
+//! `--time-limit`, for every command. A render, a chart and a choice keep to it by themselves, and keep what is done: a
+//! render from its beginning, and the others from when there is something to keep.
 
 use super::failure::{self, Failure};
 use super::messages;
