@@ -191,7 +191,8 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
     }
 
     fn polynomial(&self) -> Option<&AlongLines> {
-        self.polynomial()
+        let along_lines = self.formula.field().map(Field::along_lines).or(self.along_lines.as_ref());
+        along_lines.filter(|_| self.degree.is_some())
     }
 
     fn field(&self) -> Option<&Field> {
@@ -222,4 +223,36 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
 /// Returns the unit vector along a vector of any length, or `None` for a vector without a direction.
 fn direction(vector: DVec3) -> Option<DVec3> {
     (vector / vector.abs().max_element()).try_normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tabray_world::certify::{Enclosure, Precision};
+    use tabray_world::geometry::sight::Sight;
+
+    /// Steiner's surface, of which the parts of the axes beyond 1 are alone: the formula is 0 there and above 0 around them.
+    struct Steiner;
+
+    impl Implicit for Steiner {
+        fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+            let [x, y, z] = at.map(|axis| axis.powi(2));
+            x * y + y * z + z * x - N::constant(2.0) * at[0] * at[1] * at[2]
+        }
+
+        fn bounds(&self) -> [DVec3; 2] {
+            [DVec3::splat(-2.0), DVec3::splat(2.0)]
+        }
+    }
+
+    #[test]
+    fn a_polynomial_that_no_scene_gives_is_decided_exactly() {
+        let body = body(Steiner, Frame::at(DVec3::ZERO));
+        let start = DVec3::new(3.0, 2.5, 4.5);
+        let certify = |dir| body.shape.certify(&Sight::exactly(start, dir), Precision::Octuple);
+        // The ray meets the y axis at 1.83.
+        let touch = certify(DVec3::new(-9.0, -2.0, -13.5));
+        assert!(matches!(touch, Enclosure::Hits(_)), "{touch:?}");
+        assert_eq!(certify(DVec3::new(-9.0, -2.0, -13.5 - 1e-12)), Enclosure::Misses);
+    }
 }

@@ -136,7 +136,7 @@ impl Args {
     pub fn watch(&self) -> Result<Stop, Failure> {
         interrupt::catch(InterruptAction::Exit(NOT_FINISHED))?;
         let stop = Stop::default();
-        let (time_limit, max_memory) = (time_limit::keep(), memory::chosen());
+        let (time_limit, max_memory) = (time_limit::given(), memory::chosen());
         if time_limit.is_none() && max_memory.is_none() {
             return Ok(stop);
         }

@@ -1,13 +1,10 @@
-//! Formulas along lines, as polynomials: rounded, by their values at nodes, or exact.
+//! Formulas along lines, as polynomials.
 
-use super::nodes::Nodes;
-use super::program::{MAX_REGISTERS, Program, Value, Values};
-use super::rational::{self, Rational};
+use super::program::{NAMED_REGISTERS, Program, Value, Values};
 use super::recorded::{self, Recorder};
 use super::step::Step;
 use super::variables::SPACE;
 use crate::polynomial::{Coefficient, Polynomial};
-use crate::roots::whole::Whole;
 use crate::scalar::Scalar;
 
 /// A formula in x, y and z along lines. Powers are products.
@@ -23,19 +20,8 @@ impl AlongLines {
             step => step != Step::Spline,
         };
         let program = by_products(&values, SPACE.len(), Products::All);
-        program.filter(|_| values.list.iter().all(is_known)).map(Self)
-    }
-
-    /// Prepares a formula that is a polynomial of this degree along lines in a box, given its low and its high corner.
-    /// Returns `None` if it is not, or if it is too long.
-    pub fn nodes(&self, degree: usize, corners: [[f64; 3]; 2]) -> Option<Nodes> {
-        Nodes::new(&self.0, degree, corners)
-    }
-
-    /// Returns the formula along the points `origin + t dir`, times a positive number. Returns `None` if it is not a
-    /// polynomial of t with a degree that a [`Polynomial`] may have.
-    pub fn exactly(&self, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
-        rational::whole(&self.0, origin, dir)
+        let fits = program.registers <= NAMED_REGISTERS && values.list.iter().all(is_known);
+        fits.then_some(Self(program))
     }
 
     /// Evaluates the formula at a point with polynomials as coordinates. Operations work in place, because copying a
@@ -91,8 +77,8 @@ pub(super) enum Products {
     OfSquares,
 }
 
-/// Returns a program in which powers are products, or `None` if it needs too many registers.
-pub(super) fn by_products(given: &Values, variables: usize, which: Products) -> Option<Program> {
+/// Returns a program in which powers are products. It may have more registers than instructions can name.
+pub(super) fn by_products(given: &Values, variables: usize, which: Products) -> Program {
     let mut new = Powers { list: given.list[..variables].to_vec(), known: Vec::new() };
     let mut places: Vec<usize> = (0..variables).collect();
     for value in &given.list[variables..] {
@@ -108,8 +94,7 @@ pub(super) fn by_products(given: &Values, variables: usize, which: Products) -> 
             step => new.push(step, operands),
         });
     }
-    let program = Program::of(&Values { list: new.list, result: places[given.result] }, variables);
-    (program.registers <= MAX_REGISTERS).then_some(program)
+    Program::of(&Values { list: new.list, result: places[given.result] }, variables)
 }
 
 struct Powers {
@@ -161,6 +146,7 @@ impl Powers {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formula::rational::Rational;
     use crate::formula::tests::field;
     use crate::interval::Interval;
     use crate::polynomial::MAX_COEFFICIENTS;

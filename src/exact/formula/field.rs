@@ -73,7 +73,10 @@ impl<const COUNT: usize> FieldOf<COUNT> {
             quick = new(with_roots(&quick.steps));
         }
         let values = (COUNT == SPACE.len()).then(|| Values::new(&quick.steps, COUNT));
-        let of_space = |which| by_products(values.as_ref()?, COUNT, which);
+        let of_space = |which| {
+            let program = by_products(values.as_ref()?, COUNT, which);
+            (program.registers <= MAX_REGISTERS).then_some(program)
+        };
         let along_lines = AlongLines(of_space(Products::All).unwrap_or_else(|| quick.program.clone()));
         if let Some(program) = of_space(Products::OfSquares) {
             quick.program = program;

@@ -1,5 +1,6 @@
 //! A polynomial along a line from its values at nodes of the line, which is faster than operations on the coefficients.
 
+use super::along::AlongLines;
 use super::program::{Instruction, Program};
 use super::step::Step;
 use crate::double_double::DoubleDouble;
@@ -83,9 +84,11 @@ pub struct NearLine {
     pub turn: f64,
 }
 
-impl Nodes {
-    /// See [`AlongLines::nodes`](super::along::AlongLines::nodes).
-    pub(super) fn new(program: &Program, degree: usize, [low, high]: [[f64; 3]; 2]) -> Option<Self> {
+impl AlongLines {
+    /// Prepares a formula that is a polynomial of this degree along lines in a box, given its low and its high corner.
+    /// Returns `None` if it is not, or if it is too long.
+    pub fn nodes(&self, degree: usize, [low, high]: [[f64; 3]; 2]) -> Option<Nodes> {
+        let Self(program) = self;
         let within = per_axis(|axis| {
             let slack = AROUND * (high[axis] - low[axis]);
             Interval { low: low[axis] - slack, high: high[axis] + slack }
@@ -101,9 +104,11 @@ impl Nodes {
         let grows = (error(most_off)? - exact) / most_off;
         let basis = BASES.get(degree)?.get_or_init(|| Basis::new(degree)).as_ref()?;
         let error = [exact, ROUNDED_UP * grows.max(0.0)];
-        Some(Self { program: program.clone(), basis, degree, error, most_off, size })
+        Some(Nodes { program: program.clone(), basis, degree, error, most_off, size })
     }
+}
 
+impl Nodes {
     /// Returns the formula on a piece of a line in the box, or `None` if its error is unknown.
     pub fn form<const N: usize>(&self, line: &NearLine, piece: Interval) -> Option<Bernstein<f64, N>> {
         match self.degree + 1 {

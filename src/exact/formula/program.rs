@@ -34,7 +34,10 @@ pub(super) struct Program {
     pub registers: usize,
 }
 
-/// The number of registers of the largest program: one for each variable, and those for the deepest nesting, with a
+/// The number of registers that instructions can name. A program with more cannot be carried out.
+pub(super) const NAMED_REGISTERS: usize = 1 << u8::BITS;
+
+/// The number of registers of the largest program of a scene's formula: one for each variable, and those for the deepest nesting, with a
 /// square root of its operand and a 0 as the innermost operation.
 pub(super) const MAX_REGISTERS: usize = SURFACE.len() + MAX_DEPTH + 1;
 

@@ -3,7 +3,7 @@
 //! The numbers of a formula are `f64`, and therefore fractions. A formula of sums, differences, products, and quotients
 //! by numbers is a polynomial along a line. Its coefficients are fractions if the line's are.
 
-use super::program::Program;
+use super::along::AlongLines;
 use super::step::Step;
 use crate::interval::Fraction;
 use crate::polynomial::MAX_COEFFICIENTS;
@@ -137,28 +137,31 @@ impl Rational {
     }
 }
 
-/// See [`AlongLines::exactly`](super::along::AlongLines::exactly).
-pub(super) fn whole(program: &Program, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
-    let place = |axis: usize| origin[axis].with_slope(&dir[axis]);
-    let along = program.fold([place(0)?, place(1)?, place(2)?], |step, [a, b, _]| {
-        Some(match step {
-            Step::Variable(_) => a.clone(),
-            Step::Number(number) => Rational::from(number),
-            Step::Neg => a.clone().negated(),
-            Step::Add => a.plus(b)?,
-            Step::Sub => a.plus(&b.clone().negated())?,
-            Step::Mul => a.times(b)?,
-            Step::Div => a.over(b)?,
-            Step::Powi(exponent) if exponent >= 0 => a.power(exponent.unsigned_abs())?,
-            Step::Powi(exponent) => Rational::from(1.0).over(&a.power(exponent.unsigned_abs())?)?,
-            Step::Scale(factor) => a.times(&Rational::from(factor))?,
-            Step::Shift(by) => a.plus(&Rational::from(by))?,
-            Step::Spline | Step::Call(_) => return None,
-        })
-    });
-    let Rational { mut numerators, .. } = along?;
-    // A common power of two would only make coefficients longer.
-    let zeros = numerators.iter().filter_map(|of| of.trailing_zeros()).min().unwrap_or(0);
-    numerators.iter_mut().for_each(|of| *of >>= zeros);
-    Some(Whole::new(numerators))
+impl AlongLines {
+    /// Returns the formula along the points `origin + t dir`, times a positive number. Returns `None` if it is not a
+    /// polynomial of t with a degree that a [`Polynomial`](crate::polynomial::Polynomial) may have.
+    pub fn exactly(&self, origin: &[Rational; 3], dir: &[Rational; 3]) -> Option<Whole> {
+        let place = |axis: usize| origin[axis].with_slope(&dir[axis]);
+        let along = self.0.fold([place(0)?, place(1)?, place(2)?], |step, [a, b, _]| {
+            Some(match step {
+                Step::Variable(_) => a.clone(),
+                Step::Number(number) => Rational::from(number),
+                Step::Neg => a.clone().negated(),
+                Step::Add => a.plus(b)?,
+                Step::Sub => a.plus(&b.clone().negated())?,
+                Step::Mul => a.times(b)?,
+                Step::Div => a.over(b)?,
+                Step::Powi(exponent) if exponent >= 0 => a.power(exponent.unsigned_abs())?,
+                Step::Powi(exponent) => Rational::from(1.0).over(&a.power(exponent.unsigned_abs())?)?,
+                Step::Scale(factor) => a.times(&Rational::from(factor))?,
+                Step::Shift(by) => a.plus(&Rational::from(by))?,
+                Step::Spline | Step::Call(_) => return None,
+            })
+        });
+        let Rational { mut numerators, .. } = along?;
+        // A common power of two would only make coefficients longer.
+        let zeros = numerators.iter().filter_map(|of| of.trailing_zeros()).min().unwrap_or(0);
+        numerators.iter_mut().for_each(|of| *of >>= zeros);
+        Some(Whole::new(numerators))
+    }
 }

@@ -4,7 +4,7 @@
 //! leaves its operations, which run as those of a scene's formula do, with the same results.
 
 use super::Formula;
-use super::program::{Program, Value, Values};
+use super::program::{NAMED_REGISTERS, Program, Value, Values};
 use super::step::{Function, Step, StepKey};
 use super::variables::SPACE;
 use crate::scalar::Scalar;
@@ -13,9 +13,6 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
-
-/// The maximum number of registers. A function that needs more is unknown everywhere.
-const MOST: usize = 1 << u8::BITS;
 
 thread_local! {
     static RECORDING: RefCell<Recording> = RefCell::default();
@@ -64,11 +61,11 @@ impl Recorder {
 pub struct Recorded(Formula);
 
 impl Recorded {
-    /// Records a function.
+    /// Records a function. One that is too long is unknown everywhere.
     pub fn of(function: impl FnOnce([Recorder; 3]) -> Recorder) -> Self {
         let (values, spline) = values(function);
         let mut program = Program::of(&values, SPACE.len());
-        if program.registers > MOST {
+        if program.registers > NAMED_REGISTERS {
             program = Program::new(&[Step::Number(f64::NAN)], SPACE.len());
         }
         let formula = Formula::new(String::new(), SPACE, vec![Step::Number(f64::NAN)]);

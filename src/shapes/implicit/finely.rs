@@ -10,7 +10,7 @@ use tabray_exact::roots::bernstein::NearRoot;
 use tabray_exact::roots::isolation::{self, RootPart};
 use tabray_exact::roots::range::Side;
 use tabray_exact::scalar::per_axis;
-use tabray_world::certify::exact_line;
+use tabray_world::certify::{Equation, exact_line};
 use tabray_world::geometry::ray::Ray;
 use tabray_world::geometry::sight::{Line, Sight};
 

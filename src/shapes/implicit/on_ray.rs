@@ -20,6 +20,7 @@ use tabray_exact::roots::stretch::Stretch;
 use tabray_exact::roots::taylor::{self, FirstRoot, SignChange};
 use tabray_exact::roots::twice;
 use tabray_exact::scalar::Scalar;
+use tabray_world::certify::Equation;
 use tabray_world::geometry::frame::{self, BLUR, Frame};
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayError, RayRange, Side};
 
@@ -61,14 +62,6 @@ impl<T: Implicit> ImplicitShape<T> {
     /// Returns the formula's value as it was recorded.
     pub fn value(&self) -> &Recorded {
         self.recorded.get_or_init(|| Recorded::of(|at| self.formula.value(at)))
-    }
-
-    /// Returns the formula along lines, if it is a polynomial there or has one.
-    pub fn polynomial(&self) -> Option<&AlongLines> {
-        self.degree.and_then(|_| match self.formula.field() {
-            Some(field) => Some(field.along_lines()),
-            None => self.along_lines.as_ref(),
-        })
     }
 
     /// Tells whether a root may be no hit, because the surface is cut off there or its formula is not defined.

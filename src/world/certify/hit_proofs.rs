@@ -39,7 +39,8 @@ pub trait HitProofs<F: Float> {
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
 
     /// Returns the shape whose part a part of this one is, with the number that the part has there. Nothing more is said
-    /// of the part than is known of that one.
+    /// of the part than is known of that one. `None` for a shape of its own, and for one made of a shape without proofs: it
+    /// has no proven hits, and so nothing is asked of its parts.
     fn source(&self, _part: usize) -> Option<(&dyn HitProofs<F>, usize)> {
         None
     }
