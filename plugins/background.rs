@@ -18,15 +18,11 @@ inventory::submit! {
 struct Uniform(Rgb);
 
 impl Background for Uniform {
-    fn colour(&self, _toward: DVec3) -> Rgb {
-        self.0
+    fn colour<N: Number>(&self, _toward: [N; 3]) -> [N; 3] {
+        constants(self.0)
     }
 
     fn brightest(&self) -> Rgb {
         self.0
-    }
-
-    fn enclose(&self, _toward: [Interval; 3]) -> [Interval; 3] {
-        self.0.to_array().map(Interval::constant)
     }
 }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 use tabray::prelude::*;
+use tabray::world::repeated::{blended, repeated};
 
 static TEXTURE: Pparm<Arc<Texture>> = Pparm::required(
     "texture",
@@ -41,22 +42,13 @@ struct Normals {
 impl Normals {
     /// Returns the components of the normal at u and v, blended from the four nearest texels.
     fn parts<N: Number>(&self, uv: [N; 2]) -> Option<[N; 3]> {
-        let (n, size) = (N::constant, self.texture.size().map(f64::from));
-        let numbers = match uv.map(N::plain) {
-            [Some(u), Some(v)] => {
-                let place = (DVec2::new(u, v) * self.repeat).map(|along| along - along.floor());
-                let texel = |column, row| self.texture.numbers(column, row);
-                constants(self.texture.blended(place * DVec2::from(size), texel))
-            }
-            _ => {
-                let texel = |at: DVec2| {
-                    let wrapped = |axis: usize| at[axis].rem_euclid(size[axis].max(1.0)) as u32;
-                    self.texture.numbers(wrapped(0), wrapped(1))
-                };
-                let place = |axis: usize| uv[axis] * n(self.repeat[axis] * size[axis]);
-                self.texture.enclose_blended([place(0), place(1)], texel)?
-            }
-        };
+        let (n, [width, height]) = (N::constant, self.texture.size());
+        let place = [0, 1].map(|axis| {
+            let along = uv[axis] * n(self.repeat[axis]);
+            along.plain().map_or(along, |along| n(along - along.floor())) * n([width, height][axis].into())
+        });
+        let texel = |at: DVec2| self.texture.numbers(repeated(at.x, width), repeated(at.y, height));
+        let numbers = blended(place, texel)?;
         Some(numbers.map(|part| n(2.0) * part - n(1.0)))
     }
 }

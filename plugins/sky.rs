@@ -44,28 +44,14 @@ struct Sky {
 
 impl Background for Sky {
     /// Goes from the horizon's colour to the zenith's in proportion to the sine of the elevation.
-    fn colour(&self, toward: DVec3) -> Rgb {
-        let height = self.up.dot(toward);
-        if height < 0.0 { self.ground } else { self.horizon.lerp(self.zenith, height.min(1.0)) }
+    fn colour<N: Number>(&self, toward: [N; 3]) -> [N; 3] {
+        let height = dot(constants(self.up), toward);
+        let part = height.max(N::constant(0.0)).min(N::constant(1.0));
+        let air = N::lerp(constants(self.horizon), constants(self.zenith), part);
+        height.either(air, constants(self.ground))
     }
 
     fn brightest(&self) -> Rgb {
         self.horizon.max(self.zenith).max(self.ground)
-    }
-
-    fn enclose(&self, toward: [Interval; 3]) -> [Interval; 3] {
-        let number = Interval::constant;
-        let height = dot(self.up.to_array().map(number), toward);
-        let clamped = |height: f64| height.clamp(0.0, 1.0);
-        let part = Interval { low: clamped(height.low), high: clamped(height.high) };
-        per_axis(|channel| {
-            let (horizon, zenith) = (number(self.horizon[channel]), number(self.zenith[channel]));
-            let (air, ground) = (horizon + part * (zenith - horizon), number(self.ground[channel]));
-            match (height.high < 0.0, height.low < 0.0) {
-                (true, _) => ground,
-                (false, true) => air.hull(ground),
-                (false, false) => air,
-            }
-        })
     }
 }

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use tabray_exact::interval::Interval;
 use tabray_exact::scalar::{Scalar, constants, cross, dot, per_axis};
+use tabray_world::number::Number;
 
 /// Returns the angle of a point around the y axis, as a fraction of a turn from 0 to 1: 0.5 toward +z, and more toward
 /// +x.
@@ -41,7 +42,7 @@ fn turn_bounds([x, _, z]: [Interval; 3]) -> Interval {
 /// Encloses the exact [`on_sphere`] for the directions of the points of a box.
 pub fn bounds_on_sphere(at: [Interval; 3]) -> [Interval; 2] {
     let height = at[1] / dot(at, at).sqrt();
-    [turn_bounds(at), (-height).acos() / Interval::pi()]
+    [turn_bounds(at), Interval::constant(0.5) + height.asin() / Interval::pi()]
 }
 
 /// Encloses the exact [`on_height`] for the points of a box.

@@ -1,19 +1,23 @@
 //! Backgrounds: the trait that a plugin implements for the colour of rays that hit no object.
 
 use crate::material::Rgb;
+use crate::number::Number;
 use glam::DVec3;
 use tabray_exact::interval::Interval;
 
-/// Any [`Background`].
-pub type AnyBackground = Box<dyn Background>;
+/// A background of any type.
+pub type AnyBackground = Box<dyn EnclosedBackground>;
 
 /// The colour of rays that hit nothing: primary, reflected and transmitted ones.
 ///
 /// Its light comes from infinitely far away, so it is not divided by the distance. With `lights yes` in a scene, it
 /// lights surfaces as well.
 pub trait Background: Send + Sync {
-    /// Returns the colour in a direction, given by a unit vector. Every channel is finite and 0 or more.
-    fn colour(&self, toward: DVec3) -> Rgb;
+    /// Returns the colour in a direction, given by a unit vector, or bounds of it in all directions of a box. Every
+    /// channel is finite and 0 or more. Pictures ask in plain numbers, and proofs of colours in intervals.
+    fn colour<N: Number>(&self, toward: [N; 3]) -> [N; 3]
+    where
+        Self: Sized;
 
     /// Returns an upper bound of all colours, per channel. The bound decides how deep rays are followed into mirrors
     /// and glass.
@@ -25,10 +29,23 @@ pub trait Background: Send + Sync {
     fn detail(&self) -> Option<[u32; 2]> {
         None
     }
+}
 
-    /// Encloses the true colours, before any rounding, in all directions of a box, per channel. Proofs of colours ask
-    /// for them. The default is always correct.
-    fn enclose(&self, _toward: [Interval; 3]) -> [Interval; 3] {
-        self.brightest().to_array().map(|high| Interval { low: 0.0, high })
+/// A background of any type, asked in plain numbers and in intervals. Every [`Background`] is one.
+pub trait EnclosedBackground: Background {
+    /// Returns the [`colour`](Background::colour) in a direction.
+    fn colour_toward(&self, toward: DVec3) -> Rgb;
+
+    /// Encloses the [`colour`](Background::colour)s, before any rounding, in all directions of a box.
+    fn colours_toward(&self, toward: [Interval; 3]) -> [Interval; 3];
+}
+
+impl<T: Background> EnclosedBackground for T {
+    fn colour_toward(&self, toward: DVec3) -> Rgb {
+        self.colour(toward.to_array()).into()
+    }
+
+    fn colours_toward(&self, toward: [Interval; 3]) -> [Interval; 3] {
+        self.colour(toward)
     }
 }

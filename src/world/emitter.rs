@@ -5,7 +5,7 @@
 //! seen. V is 0 where anything is in the way, and 1 elsewhere. Each sample of a pixel sees one point of the light, and
 //! the mean of the samples tends to the integral.
 
-use crate::background::Background;
+use crate::background::EnclosedBackground;
 use crate::ball::Ball;
 pub use crate::directions::{by_cosine, in_cone};
 use crate::material::Rgb;
@@ -70,7 +70,7 @@ pub enum Extent<'e> {
     /// The directions of a sky, chosen by the cosine. Where there is a map, it chooses half of them.
     Sky {
         /// The radiance.
-        background: &'e dyn Background,
+        background: &'e dyn EnclosedBackground,
         /// Where it is bright.
         map: Option<&'e SkyMap>,
     },

@@ -41,7 +41,7 @@ pub mod panel;
 pub mod parallel;
 pub mod patch;
 pub mod pinhole;
-mod repeated;
+pub mod repeated;
 pub mod rules;
 pub mod sample;
 pub mod scene;

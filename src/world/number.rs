@@ -79,11 +79,23 @@ pub trait Number: Scalar + PartialEq + 'static {
     /// Returns a shader of any type, to be asked in this number.
     fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Self>;
 
-    /// Returns a mean of two colours, or bounds of it; `part` is the weight of the other. Of plain numbers, rounding does not
-    /// move a channel beyond both.
+    /// Returns a mean of two colours, or bounds of it; `part` is the weight of the other.
+    #[inline(always)]
+    fn lerp(one: [Self; 3], other: [Self; 3], part: Self) -> [Self; 3] {
+        per_axis(|channel| one[channel] + part * (other[channel] - one[channel]))
+    }
+
+    /// Returns a [mean](Self::lerp) of two colours. Of plain numbers, rounding does not move a channel beyond both.
     #[inline(always)]
     fn mean(one: [Self; 3], other: [Self; 3], part: Self) -> [Self; 3] {
-        per_axis(|channel| one[channel] + part * (other[channel] - one[channel]))
+        Self::lerp(one, other, part)
+    }
+
+    /// Returns the angle, in radians from -π/2 to π/2, whose sine this number is.
+    #[inline(always)]
+    fn asin(self) -> Self {
+        let one = Self::constant(1.0);
+        self.atan2(((one - self) * (one + self)).sqrt())
     }
 
     /// Returns bounds of two numbers; of plain numbers, the second one.
@@ -178,9 +190,20 @@ impl Number for f64 {
         of
     }
 
+    /// Subtracts no nearly equal numbers.
+    #[inline(always)]
+    fn lerp(one: [Self; 3], other: [Self; 3], part: Self) -> [Self; 3] {
+        DVec3::from(one).lerp(other.into(), part).to_array()
+    }
+
     #[inline(always)]
     fn mean(one: [Self; 3], other: [Self; 3], part: Self) -> [Self; 3] {
         between(one.into(), other.into(), part).to_array()
+    }
+
+    #[inline(always)]
+    fn asin(self) -> Self {
+        libm::asin(self.clamp(-1.0, 1.0))
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Backgrounds that light surfaces.
 
-use crate::background::Background;
+use crate::background::EnclosedBackground;
 use crate::emitter::{Emitter, Extent, LightSample, by_cosine};
 use crate::light::Light;
 use crate::material::Rgb;
@@ -14,13 +14,13 @@ use tabray_exact::scalar::per_axis;
 /// The light of a background. Directions are chosen by the cosine of the angle at which light arrives. Where the
 /// background has detail, half of them are chosen by its brightness.
 pub struct SkyLight {
-    background: Arc<dyn Background>,
+    background: Arc<dyn EnclosedBackground>,
     map: OnceLock<Option<SkyMap>>,
 }
 
 impl SkyLight {
     /// Makes the light of a background, which is examined when it first lights a surface.
-    pub fn new(background: Arc<dyn Background>) -> Self {
+    pub fn new(background: Arc<dyn EnclosedBackground>) -> Self {
         Self { background, map: OnceLock::new() }
     }
 
@@ -58,7 +58,7 @@ impl Emitter for SkyLight {
         let Some(map) = self.map() else {
             let toward = DVec3::from(by_cosine(normal.to_array(), numbers)?);
             let cosine = toward.dot(normal);
-            let light = self.background.colour(toward) / cosine;
+            let light = self.background.colour_toward(toward) / cosine;
             return (cosine > 0.0).then_some(LightSample { toward, distance: f64::INFINITY, light });
         };
         // The middle of the range chooses by the cosine, so a single sample is the most even one.
@@ -74,7 +74,7 @@ impl Emitter for SkyLight {
             return None;
         }
         let density = 0.5 * cosine + 0.5 * PI * map.density(toward);
-        let light = self.background.colour(toward) / density;
+        let light = self.background.colour_toward(toward) / density;
         Some(LightSample { toward, distance: f64::INFINITY, light })
     }
 

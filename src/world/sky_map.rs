@@ -1,6 +1,7 @@
 //! The brightness of a background around the scene.
 
-use crate::background::Background;
+use crate::background::EnclosedBackground;
+use crate::number::Number;
 use crate::parallel;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
@@ -31,7 +32,7 @@ pub struct SkyMap {
 
 impl SkyMap {
     /// Makes the map of a background; `None` if it has no detail, or is black.
-    pub(super) fn of(background: &dyn Background) -> Option<Self> {
+    pub(super) fn of(background: &dyn EnclosedBackground) -> Option<Self> {
         let [width, height] = background.detail()?;
         if width == 0 || height == 0 {
             return None;
@@ -47,7 +48,9 @@ impl SkyMap {
         let light = |y: usize| -> Vec<f32> {
             let up = (y as f64 + 0.5) / height as f64;
             let place = |x: usize| DVec2::new((x as f64 + 0.5) / width as f64, up);
-            (0..width).map(|x| background.colour(direction(place(x))).max_element().max(0.0) as f32).collect()
+            (0..width)
+                .map(|x| background.colour_toward(direction(place(x))).max_element().max(0.0) as f32)
+                .collect()
         };
         let looks = parallel::map_ranges(height, MANY, &|range| range.map(light).collect());
         // The mean of colours that are interpolated between the middles of texels. Over a part of a texel on one side
@@ -108,8 +111,7 @@ impl SkyMap {
 
     /// Returns the density of the directions that are chosen, per unit of solid angle.
     pub(super) fn density(&self, toward: DVec3) -> f64 {
-        let around = 0.5 + libm::atan2(toward.x, -toward.z) / (2.0 * PI);
-        let up = 0.5 + libm::asin(toward.y.clamp(-1.0, 1.0)) / PI;
+        let [around, up] = equirectangular(toward.to_array());
         let index = |part: f64, count: usize| ((part * count as f64) as usize).min(count - 1);
         self.density_in(index(up, self.rows), index(around, self.columns))
     }
@@ -147,11 +149,12 @@ fn band(row: usize, rows: usize) -> f64 {
     sine(row + 1, rows) - sine(row, rows)
 }
 
-/// Encloses the places of directions in an equirectangular map whose middle lies toward -z, in its width from the
-/// left and its height from below. The directions are unit vectors in a box.
-pub fn equirectangular([x, y, z]: [Interval; 3]) -> [Interval; 2] {
-    let (n, pi) = (Interval::constant, Interval::pi());
-    [n(0.5) + x.atan2(-z) / (n(2.0) * pi), n(1.0) - y.acos() / pi]
+/// Returns the place of a direction in an equirectangular map whose middle lies toward -z, in its width from the left and
+/// its height from below, or bounds of the places of the unit vectors in a box.
+#[inline]
+pub fn equirectangular<N: Number>([x, y, z]: [N; 3]) -> [N; 2] {
+    let (half, pi) = (N::constant(0.5), N::pi());
+    [half + x.atan2(-z) / (N::constant(2.0) * pi), half + y.asin() / pi]
 }
 
 /// Returns the direction at a place of an equirectangular map, in its width from the left and its height from below.

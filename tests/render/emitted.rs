@@ -216,7 +216,7 @@ fn an_environment_lights_as_the_sum_over_its_map_says() {
             let height = 2.0 * (f64::from(row) + 0.5) / f64::from(count) - 1.0;
             let flat = (1.0 - height * height).sqrt();
             let toward = DVec3::new(flat * around.sin(), height, -flat * around.cos());
-            expected += toward.dot(normal).max(0.0) * background.colour(toward);
+            expected += toward.dot(normal).max(0.0) * background.colour_toward(toward);
         }
         expected *= 4.0 / f64::from(2 * count * count);
         let found = seen(&model_in(folder.path(), &text(normal, "yes")), 4096) / DVec3::new(0.8, 0.4, 0.2);

@@ -409,8 +409,8 @@ impl Interface for Amplifier {
 struct Glare;
 
 impl Background for Glare {
-    fn colour(&self, toward: DVec3) -> Rgb {
-        Rgb::splat(1.0 + toward.y)
+    fn colour<N: Number>(&self, [_, y, _]: [N; 3]) -> [N; 3] {
+        [N::constant(1.0) + y; 3]
     }
 
     fn brightest(&self) -> Rgb {

@@ -6,6 +6,7 @@ use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
 use tabray::exact::{Interval, Scalar, Wide, affine::Affine, double_double::DoubleDouble, dual::Dual};
+use tabray::world::number::Number;
 
 type Big = FBig<HalfEven, 2>;
 
@@ -173,7 +174,7 @@ fn intervals_hold_the_true_angles() {
             let (less, more) = (width * random.between(0.0, 1.0), width * random.between(0.0, 1.0));
             (inside, Interval { low: inside - less, high: inside + more })
         };
-        let [(x, columns), (y, rows), (cosine, cosines)] =
+        let [(x, columns), (y, rows), (sine, sines)] =
             [around(-3.0, 3.0), around(-3.0, 3.0), around(-1.0, 1.0)];
         let angles = rows.atan2(columns);
         // Positive where the point lies to the left of a direction.
@@ -186,10 +187,11 @@ fn intervals_hold_the_true_angles() {
         let held = left(angles.low) >= zero && left(angles.high) <= zero;
         assert!(is_turn || held, "({x:?}, {y:?}) is not within {angles:?}");
 
-        let angles = cosines.acos();
-        let [most, least] = [angles.low, angles.high].map(|angle| f256::from(angle).sin_cos().1);
-        let held = least <= f256::from(cosine) && f256::from(cosine) <= most;
-        assert!(held, "the angle of {cosine:?} is not within {angles:?}");
+        let angles = sines.asin();
+        let [least, most] = [angles.low, angles.high].map(|angle| f256::from(angle).sin_cos().0);
+        let is_turn = angles.width() > std::f64::consts::TAU;
+        let held = is_turn || least <= f256::from(sine) && f256::from(sine) <= most;
+        assert!(held, "the angle of {sine:?} is not within {angles:?}");
     }
     let [above, across] = [Interval { low: 1e-300, high: 1.0 }, Interval { low: -1.0, high: 1e-300 }];
     let left = Interval { low: -2.0, high: -1.0 };

@@ -107,15 +107,6 @@ impl<F: Float> Interval<F> {
     }
 }
 
-impl Interval {
-    /// Encloses the arc cosines, in radians, of the numbers of the interval in the range from -1 to 1.
-    pub fn acos(self) -> Self {
-        let [least, most] = [self.high, self.low].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
-        let Self { low, high } = Self { low: least, high: most }.around_angle();
-        Self { low: low.max(0.0), high }
-    }
-}
-
 impl<F: Float> Interval<F> {
     /// Widens computed angles by twice the bound of other functions, because the documentation of `libm` states an
     /// error of up to 2 ulps.

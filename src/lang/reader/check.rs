@@ -26,7 +26,7 @@ use tabray_core::scene::model::{Item, Object};
 use tabray_core::scene::store::Store;
 use tabray_core::scene::value::Datum;
 use tabray_core::world::accuracy::Accuracy;
-use tabray_core::world::background::Background;
+use tabray_core::world::background::EnclosedBackground;
 use tabray_core::world::body::{Label, NamedBody, ShaderFactory};
 use tabray_core::world::lamp::Lamp;
 use tabray_core::world::material::Material;
@@ -110,7 +110,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) lights: Vec<Item<Lamp>>,
     /// The warning about colours from 0 to 255, if any.
     pub(super) levels: Option<Fault>,
-    pub(super) background: Option<(usize, Arc<dyn Background>)>,
+    pub(super) background: Option<(usize, Arc<dyn EnclosedBackground>)>,
     packer: ValidPacker<'r>,
 }
 

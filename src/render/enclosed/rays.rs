@@ -161,7 +161,7 @@ impl<'s> EnclosingTracer<'s> {
     fn background<N: Enclosing>(&self, ray: &Ray<N>) -> Colour<N> {
         let Some(background) = &self.scene.model.background else { return [N::constant(0.0); 3] };
         let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
-        let seen = background.value.enclose(toward);
+        let seen = background.value.colours_toward(toward);
         let seen = per_axis(|channel| N::enclosing(Interval::from_f64(seen[channel])));
         absorbed(seen, media::between(self.scene, &ray.path, None), None)
     }

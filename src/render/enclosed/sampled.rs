@@ -8,7 +8,7 @@ use super::surface::HitPoints;
 use glam::{DVec2, DVec3};
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{constants, cross, dot, per_axis, unit};
-use tabray_world::background::Background;
+use tabray_world::background::EnclosedBackground;
 use tabray_world::ball::Ball;
 use tabray_world::directions::{by_cosine, from_square, in_cone};
 use tabray_world::emitter::Extent;
@@ -214,7 +214,7 @@ fn on_ball<N: Enclosing>(ball: &Ball, at: [N; 3], numbers: DVec2) -> Option<Poin
 /// Encloses the direction that a sample of [`SkyLight`](tabray_world::sky_light::SkyLight) chooses for two numbers
 /// from 0 to 1, and its light.
 fn in_sky<N: Enclosing>(
-    (background, map): (&dyn Background, Option<&SkyMap>),
+    (background, map): (&dyn EnclosedBackground, Option<&SkyMap>),
     normal: [N; 3],
     numbers: DVec2,
 ) -> Option<Option<Points<N>>> {
@@ -241,7 +241,7 @@ fn in_sky<N: Enclosing>(
             n(0.5) * cosine + half_pi * N::enclosing(Interval::from_f64(density))
         }
     };
-    let colour = background.enclose(per_axis(|axis| toward[axis].coarse()));
+    let colour = background.colours_toward(per_axis(|axis| toward[axis].coarse()));
     let light = per_axis(|channel| N::enclosing(Interval::from_f64(colour[channel])) / density);
     Some(Some(Points { toward, are_far: true, light }))
 }

@@ -12,7 +12,7 @@ use crate::observer::{Count, DropReason, Event, Hit, RayKind, RayPurpose};
 use crate::plan::depth::{Branch, STEPS, step};
 use glam::DVec3;
 use std::mem::swap;
-use tabray_world::background::Background;
+use tabray_world::background::EnclosedBackground;
 use tabray_world::geometry::ray_packet::SurfaceInteraction;
 use tabray_world::interface::{Crossing, Interface};
 use tabray_world::material::Rgb;
@@ -445,7 +445,7 @@ impl Tracer<'_, '_> {
 
 /// Sets the colours of rays that hit nothing. Those whose budget is used up end at a distance of 0, and are black.
 fn see_background(
-    background: &dyn Background,
+    background: &dyn EnclosedBackground,
     group: &RayGroup,
     far: &[f64],
     lanes: &[u8],
@@ -453,6 +453,6 @@ fn see_background(
 ) {
     for lane in lanes.iter().map(|lane| usize::from(*lane)) {
         let is_over = far[lane] == 0.0;
-        colours.set(lane, if is_over { Rgb::ZERO } else { background.colour(group.dir.get(lane)) });
+        colours.set(lane, if is_over { Rgb::ZERO } else { background.colour_toward(group.dir.get(lane)) });
     }
 }

@@ -103,7 +103,7 @@ impl Finished {
             for axis in (0..2).filter(|axis| map.wrap[*axis] != Wrap::Repeat) {
                 (low[axis], high[axis]) = (low[axis].max(0.0), high[axis].min(size[axis]));
             }
-            return map.texture.mean_repeated(low, high);
+            return map.texture.mean_between(low, high);
         }
         map.blended(place, |column, row| map.texture.texel(column, row))
     }

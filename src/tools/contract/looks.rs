@@ -11,7 +11,7 @@ use tabray_core::scene::profile::Profile;
 use tabray_core::shapes::revolution::{Refinement, Revolution};
 use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
-use tabray_core::world::background::Background;
+use tabray_core::world::background::EnclosedBackground;
 use tabray_core::world::body::ShaderFactory;
 use tabray_core::world::emitter::{Emitter, LightSample};
 use tabray_core::world::hittable::Curvature;
@@ -140,7 +140,7 @@ pub fn paint(paint: &ShaderFactory, draw: &mut Draw) -> Result<(), Fault> {
 }
 
 /// Checks a background's colours and their bounds in many directions.
-pub fn background(background: &dyn Background, draw: &mut Draw) -> Result<(), Fault> {
+pub fn background(background: &dyn EnclosedBackground, draw: &mut Draw) -> Result<(), Fault> {
     /// The largest rounding error of a colour, as a part of the brightest one.
     const ROUNDING: f64 = 1e-12;
     let most = background.brightest();
@@ -148,7 +148,7 @@ pub fn background(background: &dyn Background, draw: &mut Draw) -> Result<(), Fa
     for size in [0.0, 1e-6, 1e-3, 0.3] {
         for _ in 0..PLACES {
             let toward = draw.direction();
-            let colour = background.colour(toward);
+            let colour = background.colour_toward(toward);
             if !colour.is_finite() || colour.min_element() < 0.0 {
                 return Err(Promise::BackgroundIsSound.fault(format!("toward {toward} it is {colour}")));
             }
@@ -159,13 +159,14 @@ pub fn background(background: &dyn Background, draw: &mut Draw) -> Result<(), Fa
             // A box of directions around one, which is not in the middle.
             let at = toward.to_array();
             let (below, above) = (size * draw.part(), size * draw.part());
-            let bounds = background.enclose(at.map(|at| Interval { low: at - below, high: at + above }));
+            let bounds =
+                background.colours_toward(at.map(|at| Interval { low: at - below, high: at + above }));
             let is_within = |channel: usize| {
                 bounds[channel].low - error <= colour[channel]
                     && colour[channel] <= bounds[channel].high + error
             };
             if !(0..3).all(is_within) {
-                let found = format!("toward {toward} it is {colour}, and `enclose` says {bounds:?}");
+                let found = format!("toward {toward} it is {colour}, and in a box around that, {bounds:?}");
                 return Err(Promise::BackgroundIsSound.fault(found));
             }
         }

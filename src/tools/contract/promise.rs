@@ -148,7 +148,7 @@ impl Promise {
             }
             Self::LightIsFinite => "return 0 where no light arrives, including at the light's own location",
             Self::BackgroundIsSound => {
-                "state rules for the attributes, and leave out `enclose` if in doubt; `brightest` bounds all colours"
+                "state rules for the attributes; `brightest` bounds all colours, and a `colour` of intervals those in a box"
             }
             Self::CameraLooks => "state rules for the attributes from which the camera is made",
             Self::CameraKnows => {
@@ -195,7 +195,7 @@ impl fmt::Display for Promise {
             }
             Self::LightIsFinite => "a light's location, size and emission are finite",
             Self::BackgroundIsSound => {
-                "a background's colours are finite, not negative, and within `brightest` and `enclose`"
+                "a background's colours are finite, not negative, and within `brightest` and their bounds in intervals"
             }
             Self::CameraLooks => "a camera has pixels, samples and rays with unit directions",
             Self::CameraKnows => "what a camera says about its rays is true",

@@ -1,7 +1,7 @@
 //! A scene ready to be traced. It does not change during a render.
 
 use crate::any_shape::AnyShape;
-use crate::background::Background;
+use crate::background::EnclosedBackground;
 use crate::body::{AnyShader, Label, NamedBody, ShaderFactory};
 use crate::geometry::ray::Side;
 use crate::lamp::Lamp;
@@ -36,7 +36,7 @@ pub struct Model {
     /// The lights, in the order of the scene, and last the background, if it lights surfaces.
     pub lights: Vec<Item<Lamp>>,
     /// The colour of rays that hit nothing; black without a background.
-    pub background: Option<Item<Arc<dyn Background>>>,
+    pub background: Option<Item<Arc<dyn EnclosedBackground>>>,
     /// The texts of objects, each with the order of its entity in the scene.
     pub labels: Vec<(usize, Label)>,
     /// The files that the scene names: those that it includes, and those of its entities.

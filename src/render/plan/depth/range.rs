@@ -69,7 +69,7 @@ pub(super) fn ranges(model: &Model, looks: &[Option<Look>]) -> (Vec<Sides<LightR
 /// Returns the darkest and the brightest of the background, per channel.
 fn background(model: &Model) -> [Rgb; 2] {
     let Some(background) = &model.background else { return [Rgb::ZERO; 2] };
-    let seen = background.value.enclose([Interval { low: -1.0, high: 1.0 }; 3]);
+    let seen = background.value.colours_toward([Interval { low: -1.0, high: 1.0 }; 3]);
     let low = seen.map(|channel| if channel.low > 0.0 { channel.low } else { 0.0 });
     [Rgb::from_array(low), background.value.brightest()]
 }
