@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use tabray::prelude::*;
+use tabray::world::repeated::blended;
 
 static TEXTURE: Pparm<Arc<Texture>> = Pparm::required("texture", "the texture, defined earlier in the scene");
 static REPEAT: Pparm<[i64; 2]> =
@@ -31,83 +32,63 @@ impl Image {
         self.repeat * DVec2::from(self.texture.size().map(f64::from))
     }
 
-    /// Returns where a point lies among the texels, each of width 1; without u and v, in a corner.
-    fn place(&self, at: &SurfacePoint) -> DVec2 {
-        at.uv.unwrap_or_default() * self.size()
+    /// Returns where such u and v lie among the texels of all repetitions, each of width 1.
+    fn place<N: Number>(&self, [u, v]: [N; 2]) -> [N; 2] {
+        let size = self.size();
+        [u * N::constant(size.x), v * N::constant(size.y)]
     }
 
-    /// Returns the texel of a column and a row among those of all repetitions. Beyond an edge, it is the one at the
-    /// edge.
-    fn texel(&self, at: DVec2) -> Rgb {
-        self.texture.texel(self.wrapped(at.x, 0), self.wrapped(at.y, 1))
+    /// Returns u and v of a point in plain numbers; without them, those of a corner.
+    fn uv(at: &SurfacePoint) -> [f64; 2] {
+        at.uv.unwrap_or_default().to_array()
     }
 
-    /// Returns the column or the row in the texture of a column or row among those of all repetitions.
-    fn wrapped(&self, at: f64, axis: usize) -> u32 {
-        let size = u64::from(self.texture.size()[axis].max(1));
-        (at.clamp(0.0, (self.size()[axis] - 1.0).max(0.0)) as u64 % size) as u32
+    /// Returns what `of` returns for the texel at such u and v or, if colours are interpolated, a blend of four texels;
+    /// `None` where it is open.
+    fn blend<N: Number>(&self, uv: [N; 2], of: impl Fn(u32, u32) -> DVec3) -> Option<[N; 3]> {
+        let ([width, height], all) = (self.texture.size(), self.size());
+        // Beyond an edge, the texel is that of the edge.
+        let texel = |at: f64, all: f64, count: u32| {
+            (at.clamp(0.0, (all - 1.0).max(0.0)) as u64 % u64::from(count.max(1))) as u32
+        };
+        let of = |at: DVec2| of(texel(at.x, all.x, width), texel(at.y, all.y, height));
+        match self.smooth {
+            true => blended(self.place(uv), of),
+            false => Some(N::table(self.place(uv), || self.texture.brightest(), |at| of(at.into()))),
+        }
+    }
+
+    /// Returns the same of a point in plain numbers.
+    fn blend_at(&self, at: &SurfacePoint, of: impl Fn(u32, u32) -> DVec3) -> DVec3 {
+        self.blend(Self::uv(at), of).map_or(DVec3::ZERO, DVec3::from)
     }
 
     /// Returns the opacity at a point.
     fn alpha(&self, at: &SurfacePoint) -> f64 {
-        self.blend(self.place(at), |column, row| DVec3::splat(self.texture.alpha(column, row))).x
+        self.blend_at(at, |column, row| DVec3::splat(self.texture.alpha(column, row))).x
     }
 
-    fn colour(&self, at: &SurfacePoint) -> Rgb {
+    /// Returns the colour at a point, or the mean over the patch around it; `None` where it is open.
+    fn colour<N: Number>(&self, at: &Point<N>) -> Option<[N; 3]> {
         if self.texture.covers_in_part() {
             // The colour of the point, not a mean over a patch.
-            return self.texture.by_alpha(|texel| self.blend(self.place(at), texel));
+            return at.plain.map(|at| constants(self.texture.by_alpha(|texel| self.blend_at(at, texel))));
         }
-        if let Some([low, high]) = at.patch.and_then(|patch| patch.uv) {
-            let size = self.size();
-            let (low, high) = (low * size, high * size);
-            if !self.smooth || (high - low).max_element() > 1.0 {
-                return self.mean(low, high);
+        if let Some(corners) = at.patch.as_ref().and_then(|patch| patch.uv) {
+            let [low, high] = corners.map(|uv| self.place(uv));
+            let is_within_a_texel =
+                |axis: usize| Some((N::constant(1.0) - (high[axis] - low[axis])).sign()? == N::constant(1.0));
+            // Near by, interpolated texels are shown as they are.
+            if !(self.smooth && is_within_a_texel(0)? && is_within_a_texel(1)?) {
+                let size = self.size();
+                let clamped = |of: [N; 2]| {
+                    [0, 1].map(|axis| of[axis].max(N::constant(0.0)).min(N::constant(size[axis])))
+                };
+                return self.texture.mean_repeated([clamped(low), clamped(high)]);
             }
         }
-        self.blend(self.place(at), |column, row| self.texture.texel(column, row))
-    }
-
-    /// Returns what `of` returns for the texel at a place or, if colours are interpolated, a blend of four texels.
-    fn blend(&self, place: DVec2, of: impl Fn(u32, u32) -> DVec3) -> DVec3 {
-        let of = |at: DVec2| of(self.wrapped(at.x, 0), self.wrapped(at.y, 1));
-        if !self.smooth {
-            return of(place.floor());
-        }
-        let (corner, part) = ((place - 0.5).floor(), (place - 0.5).fract_gl());
-        let row = |y: f64| of(corner + DVec2::new(0.0, y)).lerp(of(corner + DVec2::new(1.0, y)), part.x);
-        row(0.0).lerp(row(1.0), part.y)
-    }
-
-    /// Returns the mean of a rectangle, given by its corners among the texels of all repetitions.
-    fn mean(&self, low: DVec2, high: DVec2) -> Rgb {
-        let whole = self.size();
-        self.texture.mean_repeated(low.clamp(DVec2::ZERO, whole), high.clamp(DVec2::ZERO, whole))
-    }
-
-    /// Encloses the mean between such u and v; `None` where a blend may be shown.
-    fn enclosed_mean<N: Number>(&self, uv: [[N; 2]; 2]) -> Option<[N; 3]> {
-        let size = self.size();
-        let place = |along: N, axis: usize| {
-            let size = N::constant(size[axis]);
-            (along * size).max(N::constant(0.0)).min(size)
-        };
-        let [low, high] = uv.map(|[u, v]| [place(u, 0), place(v, 1)]);
-        // Near by, interpolated texels are shown as they are.
-        let is_far = !self.smooth || (0..2).any(|axis| (high[axis] - low[axis]).bounds()[0] > 1.0);
-        if is_far { self.texture.enclose_mean_repeated([low, high]) } else { None }
-    }
-
-    /// Encloses the colours at points with such u and v; anything where they are not known.
-    fn enclosed<N: Number>(&self, uv: Option<[N; 2]>) -> [N; 3] {
-        let any = || [N::any(0.0, self.texture.brightest()); 3];
-        let Some([u, v]) = uv else { return any() };
-        let size = self.size();
-        let place = [u * N::constant(size.x), v * N::constant(size.y)];
-        if self.smooth {
-            return self.texture.enclose_blended(place, |at| self.texel(at)).unwrap_or_else(any);
-        }
-        N::table(place, || self.texture.brightest(), |[x, y]| self.texel(DVec2::new(x, y)))
+        let uv = at.uv.or(at.plain.map(|at| Self::uv(at).map(N::constant)))?;
+        self.blend(uv, |column, row| self.texture.texel(column, row))
     }
 }
 
@@ -127,12 +108,8 @@ impl Shader for Image {
         if of == Reflectivity::Specular {
             return Some(own);
         }
-        let mean = || at.patch.and_then(|patch| self.enclosed_mean(patch.uv?));
-        let texel = match at.plain {
-            Some(at) => constants(self.colour(at)),
-            None => mean().unwrap_or_else(|| self.enclosed(at.uv)),
-        };
-        Some(product(own, texel))
+        let most = || [N::any(0.0, self.texture.brightest()); 3];
+        Some(product(own, self.colour(at).unwrap_or_else(most)))
     }
 
     fn cuts_out(&self) -> bool {
@@ -152,7 +129,7 @@ impl Shader for Image {
     }
 
     fn tile(&self, at: &SurfacePoint) -> DVec2 {
-        self.place(at).floor().min(self.size() - 1.0)
+        DVec2::from(self.place(Self::uv(at))).floor().min(self.size() - 1.0)
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {
