@@ -2,7 +2,6 @@
 
 use super::disc::Disc;
 use super::light;
-use std::f64::consts::PI;
 use tabray::exact::double_double::scaled;
 use tabray::prelude::*;
 use tabray::shapes::outline;
@@ -111,7 +110,7 @@ impl Light for AreaLight {
         self.panel.radius()
     }
 
-    fn emitter(&self) -> Option<&dyn Emitter> {
+    fn emitter(&self) -> Option<&dyn EnclosedEmitter> {
         Some(self)
     }
 
@@ -121,19 +120,17 @@ impl Light for AreaLight {
 }
 
 impl Emitter for AreaLight {
-    fn sample(&self, at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
+    fn sample<N: Number>(&self, at: [N; 3], _normal: [N; 3], numbers: DVec2) -> Option<EmitterPoint<N>> {
         let (toward, solid_angle) = self.panel.sample(at, numbers)?;
-        // The light's own surface does not block its rays, however flat the angle at which they meet it.
-        let distance = toward.length() * (1.0 - 1e-9);
-        let light = solid_angle / PI * self.radiance;
-        Some(LightSample { toward: toward.try_normalize()?, distance, light })
+        let light = per_axis(|channel| solid_angle / N::pi() * N::constant(self.radiance[channel]));
+        Some(EmitterPoint { toward, is_far: false, light })
     }
 
     fn density(&self, at: DVec3, toward: DVec3, distance: f64) -> Option<f64> {
         self.panel.density(at, toward, distance)
     }
 
-    fn extent(&self) -> Extent<'_> {
+    fn extent(&self) -> Extent {
         Extent::Panel(self.panel)
     }
 

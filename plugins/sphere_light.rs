@@ -49,7 +49,7 @@ impl Light for SphereLight {
         self.ball.radius
     }
 
-    fn emitter(&self) -> Option<&dyn Emitter> {
+    fn emitter(&self) -> Option<&dyn EnclosedEmitter> {
         Some(self)
     }
 
@@ -59,21 +59,17 @@ impl Light for SphereLight {
 }
 
 impl Emitter for SphereLight {
-    fn sample(&self, at: DVec3, normal: DVec3, numbers: DVec2) -> Option<LightSample> {
-        let BallSample { toward, distance, solid_angle_over_pi } = self.ball.sample(at, normal, numbers)?;
-        // The light's own surface is not in the way of its rays.
-        Some(LightSample {
-            toward,
-            distance: distance * (1.0 - 1e-9),
-            light: solid_angle_over_pi * self.radiance,
-        })
+    fn sample<N: Number>(&self, at: [N; 3], normal: [N; 3], numbers: DVec2) -> Option<EmitterPoint<N>> {
+        let (toward, distance, solid_angle_over_pi) = self.ball.sample(at, normal, numbers)?;
+        let light = per_axis(|channel| solid_angle_over_pi * N::constant(self.radiance[channel]));
+        Some(EmitterPoint { toward: per_axis(|axis| distance * toward[axis]), is_far: false, light })
     }
 
     fn density(&self, at: DVec3, _toward: DVec3, _distance: f64) -> Option<f64> {
         self.ball.density(at)
     }
 
-    fn extent(&self) -> Extent<'_> {
+    fn extent(&self) -> Extent {
         Extent::Ball(self.ball)
     }
 

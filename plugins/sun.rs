@@ -40,8 +40,10 @@ struct Sun {
 impl Sun {
     /// Returns `light` of each sample: the radiance times the solid angle of the sun's disc over pi. The radiance is
     /// the emissivity divided by the square of the sine of half the angle.
-    fn light(&self) -> Rgb {
-        2.0 / (2.0 - self.height) * self.emissivity
+    fn light<N: Number>(&self) -> [N; 3] {
+        let two = N::constant(2.0);
+        let factor = two / (two - N::constant(self.height));
+        per_axis(|channel| factor * N::constant(self.emissivity[channel]))
     }
 }
 
@@ -60,21 +62,21 @@ impl Light for Sun {
 
     fn brightest(&self) -> Option<Rgb> {
         // More than its rounding.
-        Some((1.0 + 1e-12) * self.light().abs())
+        Some((1.0 + 1e-12) * Rgb::from(self.light()).abs())
     }
 
-    fn emitter(&self) -> Option<&dyn Emitter> {
+    fn emitter(&self) -> Option<&dyn EnclosedEmitter> {
         Some(self)
     }
 }
 
 impl Emitter for Sun {
-    fn sample(&self, _at: DVec3, _normal: DVec3, numbers: DVec2) -> Option<LightSample> {
-        let toward = emitter::in_cone(self.direction.to_array(), self.height, numbers)?.into();
-        Some(LightSample { toward, distance: f64::INFINITY, light: self.light() })
+    fn sample<N: Number>(&self, _at: [N; 3], _normal: [N; 3], numbers: DVec2) -> Option<EmitterPoint<N>> {
+        let toward = emitter::in_cone(constants(self.direction), N::constant(self.height), numbers)?;
+        Some(EmitterPoint { toward, is_far: true, light: self.light() })
     }
 
-    fn extent(&self) -> Extent<'_> {
+    fn extent(&self) -> Extent {
         Extent::Cone { axis: self.direction, height: self.height }
     }
 }

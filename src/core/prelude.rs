@@ -16,11 +16,11 @@ pub use tabray_world::scene::value::{COLOUR, Datum, PerChannel, Type, Value, Who
 pub use tabray_world::accuracy::{Accuracy, AccuracyTag, Classic, Draft, Exact, NotClassic, Strict};
 pub use tabray_world::any_shape::AnyShape;
 pub use tabray_world::background::Background;
-pub use tabray_world::ball::{Ball, BallSample};
+pub use tabray_world::ball::Ball;
 pub use tabray_world::bent::{Bend, Bent};
 pub use tabray_world::body::{AnyShader, Body, Label, NamedBody, ShaderFactory, Warning};
 pub use tabray_world::camera::{Camera, Origins, Projected};
-pub use tabray_world::emitter::{self, Emitter, Extent, LightSample};
+pub use tabray_world::emitter::{self, Emitter, EmitterPoint, EnclosedEmitter, Extent};
 pub use tabray_world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Shape, Sides};
 pub use tabray_world::interface::{AnyInterface, Crossing, Interface, Law, Medium};
 pub use tabray_world::light::Light;

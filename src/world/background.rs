@@ -1,9 +1,10 @@
 //! Backgrounds: the trait that a plugin implements for the colour of rays that hit no object.
 
 use crate::material::Rgb;
-use crate::number::Number;
+use crate::number::{Number, coarse, plain};
 use glam::DVec3;
 use tabray_exact::interval::Interval;
+use tabray_exact::scalar::constants;
 
 /// A background of any type.
 pub type AnyBackground = Box<dyn EnclosedBackground>;
@@ -38,6 +39,16 @@ pub trait EnclosedBackground: Background {
 
     /// Encloses the [`colour`](Background::colour)s, before any rounding, in all directions of a box.
     fn colours_toward(&self, toward: [Interval; 3]) -> [Interval; 3];
+}
+
+impl dyn EnclosedBackground {
+    /// Returns the [`colour`](Background::colour) in a direction, or bounds of it in all directions of a box.
+    pub fn colour_in<N: Number>(&self, toward: [N; 3]) -> [N; 3] {
+        match plain(toward) {
+            Some(toward) => constants(self.colour_toward(toward)),
+            None => self.colours_toward(toward.map(coarse)).map(|Interval { low, high }| N::any(low, high)),
+        }
+    }
 }
 
 impl<T: Background> EnclosedBackground for T {

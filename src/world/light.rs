@@ -1,7 +1,7 @@
 //! Lights: the trait that a plugin implements.
 
 use crate::any_shape::AnyShape;
-use crate::emitter::Emitter;
+use crate::emitter::EnclosedEmitter;
 use crate::geometry::aabb::Aabb;
 use crate::material::Rgb;
 use crate::number::Number;
@@ -47,7 +47,7 @@ pub trait Light: Send + Sync {
     /// that it adds, and what is [`sent`](Self::sent) is its radiance. [`brightest`](Self::brightest) bounds `light` of
     /// each sample times the cosine of the angle at which it arrives, or, if the light has highlights, without the
     /// cosine.
-    fn emitter(&self) -> Option<&dyn Emitter> {
+    fn emitter(&self) -> Option<&dyn EnclosedEmitter> {
         None
     }
 

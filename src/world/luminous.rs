@@ -1,6 +1,6 @@
 //! Surfaces that give light by themselves: the points that rays aim at.
 
-use crate::ball::{Ball, BallSample};
+use crate::ball::Ball;
 use crate::panel::Panel;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -41,7 +41,8 @@ impl Luminous {
     pub fn sample(&self, at: DVec3, normal: DVec3, numbers: DVec2) -> Option<AimedPoint> {
         match self {
             Self::Panel(panel) => {
-                let (toward, inverse) = panel.sample(at, numbers)?;
+                let (toward, inverse) = panel.sample(at.to_array(), numbers)?;
+                let toward = DVec3::from(toward);
                 (inverse > 0.0).then_some(())?;
                 Some(AimedPoint {
                     toward: toward.try_normalize()?,
@@ -51,8 +52,8 @@ impl Luminous {
             }
             Self::Ball(ball) => {
                 let density = ball.density(at)?;
-                let BallSample { toward, distance, .. } = ball.sample(at, normal, numbers)?;
-                Some(AimedPoint { toward, distance, density })
+                let (toward, distance, _) = ball.sample(at.to_array(), normal.to_array(), numbers)?;
+                Some(AimedPoint { toward: toward.into(), distance, density })
             }
             Self::Triangles(triangles) => triangles.sample(at, numbers),
         }

@@ -1,8 +1,10 @@
 //! Flat panels that shine: rectangles and discs, and the points of them that are seen.
 
 use crate::directions::from_square;
+use crate::number::Number;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
+use tabray_exact::scalar::{constants, cross, dot, per_axis, unit};
 
 /// The points `middle + x half[0] + y half[1]` of a flat panel that shines on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,23 +42,40 @@ impl Panel {
     }
 
     /// Chooses a point as seen from a place by two numbers from 0 to 1: by solid angle, or, from afar, where that is
-    /// nearly the same, by area. Near a disc, the point is chosen in the square around it; `None` if it lies beside
-    /// the disc.
+    /// nearly the same, by area. Near a disc, the point is chosen in the square around it.
     ///
-    /// Returns the vector to the point, in world units, and the reciprocal of the density per unit of solid angle,
-    /// which is at most 2 pi.
-    pub fn sample(&self, at: DVec3, numbers: DVec2) -> Option<(DVec3, f64)> {
-        let (between, half) = (self.middle - at, self.half);
-        if between.length() > self.far() {
-            let place = if self.is_round { from_square(numbers).into() } else { 2.0 * numbers - 1.0 };
-            let toward = between + place.x * half[0] + place.y * half[1];
-            let leaving = toward.normalize().dot(self.facing()).abs();
-            return Some((toward, self.area() * leaving / toward.length_squared()));
+    /// Returns the vector to the point, in world units, and the reciprocal of the density per unit of solid angle, which is
+    /// at most 2 pi, and 0 if the point lies beside the disc. `None` where the point is open, and in plain numbers if the
+    /// place lies in the panel's plane.
+    pub fn sample<N: Number>(&self, at: [N; 3], numbers: DVec2) -> Option<([N; 3], N)> {
+        let n = N::constant;
+        let between = per_axis(|axis| n(self.middle[axis]) - at[axis]);
+        // The rounding of the distance is less than this part of it.
+        let far = N::about(self.far(), 1e-12 * self.far());
+        if is_negative(far - dot(between, between).sqrt())? {
+            let place = match self.is_round {
+                true => from_square(numbers),
+                false => [numbers.x, numbers.y].map(|number| n(2.0) * n(number) - n(1.0)),
+            };
+            return Some(self.by_area(between, place));
         }
-        let seen = SphericalRectangle::new(between, half)?;
-        let toward = seen.place(numbers);
-        let is_beside = self.is_round && (toward - between).length_squared() > half[0].length_squared();
-        (!is_beside).then_some((toward, seen.solid_angle))
+        let seen = SphericalRectangle::new(between, self.half)?;
+        let toward = seen.place(numbers)?;
+        let off: [N; 3] = per_axis(|axis| toward[axis] - between[axis]);
+        let half: [N; 3] = constants(self.half[0]);
+        let is_beside = self.is_round && is_negative(dot(half, half) - dot(off, off))?;
+        Some((toward, if is_beside { n(0.0) } else { seen.solid_angle }))
+    }
+
+    /// Returns the vector to the point at two coordinates, from -1 to 1, and the reciprocal of the density of points that are
+    /// chosen by area, per unit of solid angle. `between` leads to the middle.
+    pub fn by_area<N: Number>(&self, between: [N; 3], [x, y]: [N; 2]) -> ([N; 3], N) {
+        let n = N::constant;
+        let toward = per_axis(|axis| between[axis] + x * n(self.half[0][axis]) + y * n(self.half[1][axis]));
+        let square = dot(toward, toward);
+        // The rounding of its area and of its direction is less than the tolerance with which colours are compared.
+        let leaving = (dot(toward, constants(self.facing())) / square.sqrt()).abs();
+        (toward, n(self.area()) * leaving / square)
     }
 
     /// Returns the density, per unit of solid angle, with which [`sample`](Self::sample) chooses the point that is seen
@@ -67,7 +86,7 @@ impl Panel {
             let leaving = toward.dot(self.facing()).abs();
             return (leaving > 0.0).then(|| distance * distance / (self.area() * leaving));
         }
-        let seen = SphericalRectangle::new(between, self.half)?;
+        let seen = SphericalRectangle::new(between.to_array(), self.half)?;
         (seen.solid_angle > 0.0).then(|| 1.0 / seen.solid_angle)
     }
 }
@@ -75,70 +94,78 @@ impl Panel {
 /// A rectangle as seen from a point: the part of a unit sphere that it covers.
 ///
 /// From Ureña, Fajardo and King, "An Area-Preserving Parametrization for Spherical Rectangles", 2013.
-struct SphericalRectangle {
+struct SphericalRectangle<N> {
     /// The unit vectors along the sides, and toward the rectangle's plane, reversed.
-    axes: [DVec3; 3],
+    axes: [[N; 3]; 3],
     /// The coordinates of the sides and of the plane, in world units from the point.
-    from: DVec2,
-    to: DVec2,
-    plane: f64,
+    from: [N; 2],
+    to: [N; 2],
+    plane: N,
     /// The constants for the choice of a place, with the paper's names.
-    b: [f64; 2],
-    k: f64,
+    b: [N; 2],
+    k: N,
     /// The solid angle that the rectangle covers, in steradians.
-    solid_angle: f64,
+    solid_angle: N,
 }
 
-impl SphericalRectangle {
+impl<N: Number> SphericalRectangle<N> {
     /// Returns a rectangle as seen from a point. `between` leads from the point to the rectangle's middle. `None` if
-    /// the point lies in the rectangle's plane.
-    fn new(between: DVec3, half: [DVec3; 2]) -> Option<Self> {
-        let [x_axis, y_axis] = half.map(DVec3::normalize);
-        let z_axis = x_axis.cross(y_axis);
-        let height = between.dot(z_axis);
-        let z_axis = if height > 0.0 { -z_axis } else { z_axis };
-        let (size, place) = (
-            DVec2::new(half[0].length(), half[1].length()),
-            DVec2::new(between.dot(x_axis), between.dot(y_axis)),
-        );
-        let (from, to, plane) = (place - size, place + size, -height.abs());
-        if plane == 0.0 || !(plane.is_finite() && from.is_finite() && to.is_finite()) {
+    /// the point lies in the rectangle's plane, or that is open.
+    fn new(between: [N; 3], half: [DVec3; 2]) -> Option<Self> {
+        let [right, up]: [[N; 3]; 2] = [constants(half[0]), constants(half[1])];
+        let (x_axis, y_axis) = (unit(right), unit(up));
+        let facing = cross(x_axis, y_axis);
+        let height = dot(between, facing);
+        let sign = -height.sign()?;
+        let plane = sign * height;
+        let (width, height) = (dot(right, right).sqrt(), dot(up, up).sqrt());
+        let (x, y) = (dot(between, x_axis), dot(between, y_axis));
+        let (from, to) = ([x - width, y - height], [x + width, y + height]);
+        let is_finite = |of: N| of.plain().is_none_or(f64::is_finite);
+        let are_finite = |of: [N; 2]| is_finite(of[0]) && is_finite(of[1]);
+        if plane.is_zero() || !(is_finite(plane) && are_finite(from) && are_finite(to)) {
             return None;
         }
         // The z of the unit normals of the planes through the point and each side.
-        let inward = |side: f64| side / (plane * plane + side * side).sqrt();
-        let [low, right, high, left] = [-inward(from.y), inward(to.x), inward(to.y), -inward(from.x)];
-        let angle = |one: f64, other: f64| libm::acos((-one * other).clamp(-1.0, 1.0));
-        let [g0, g1, g2, g3] = [angle(low, right), angle(right, high), angle(high, left), angle(left, low)];
-        let k = 2.0 * PI - g2 - g3;
+        let inward = |side: N| side / (plane * plane + side * side).sqrt();
+        let [low, right, high, left] = [-inward(from[1]), inward(to[0]), inward(to[1]), -inward(from[0])];
+        // The angles between neighbours, less a right angle.
+        let (g0, g1, g2, g3) =
+            ((low * right).asin(), (right * high).asin(), (high * left).asin(), (left * low).asin());
         Some(Self {
-            axes: [x_axis, y_axis, z_axis],
+            axes: [x_axis, y_axis, per_axis(|axis| sign * facing[axis])],
             from,
             to,
             plane,
             b: [low, high],
-            k,
-            solid_angle: (g0 + g1 - k).max(0.0),
+            k: N::pi() - g2 - g3,
+            solid_angle: (g0 + g1 + g2 + g3).max(N::constant(0.0)),
         })
     }
 
     /// Chooses a point of the rectangle by two numbers from 0 to 1, evenly by solid angle. Returns the vector to it,
-    /// in world units.
-    fn place(&self, numbers: DVec2) -> DVec3 {
-        let ([low, high], [x_axis, y_axis, z_axis]) = (self.b, self.axes);
-        let (sin, cos) = libm::sincos(numbers.x * self.solid_angle + self.k);
-        let along = (cos * low - high) / sin;
-        let u = (1.0 / (along * along + low * low).sqrt()).copysign(along).clamp(-1.0, 1.0);
-        let x = -(u * self.plane) / (1.0 - u * u).max(f64::MIN_POSITIVE).sqrt();
-        let x = x.clamp(self.from.x, self.to.x);
-        let distance = (x * x + self.plane * self.plane).sqrt();
-        let height = |y: f64| y / (distance * distance + y * y).sqrt();
-        let [low, high] = [height(self.from.y), height(self.to.y)];
-        let part = low + numbers.y * (high - low);
-        let rest = 1.0 - part * part;
-        let y = if rest > 1e-12 { part * distance / rest.sqrt() } else { self.to.y };
-        x * x_axis + y.clamp(self.from.y, self.to.y) * y_axis + self.plane * z_axis
+    /// in world units; `None` where it is open.
+    fn place(&self, numbers: DVec2) -> Option<[N; 3]> {
+        let ([low, high], [x_axis, y_axis, z_axis], n) = (self.b, self.axes, N::constant);
+        let (sin, cos) = (n(numbers.x) * self.solid_angle + self.k).sin_cos();
+        let rise = cos * low - high;
+        let u = sin / (rise * rise + low * low * sin * sin).sqrt();
+        let u = (rise.sign()? * u).max(n(-1.0)).min(n(1.0));
+        let x = -(u * self.plane) / (n(1.0) - u * u).max(n(f64::MIN_POSITIVE)).sqrt();
+        let x = x.max(self.from[0]).min(self.to[0]);
+        let square = x * x + self.plane * self.plane;
+        let height = |y: N| y / (square + y * y).sqrt();
+        let (low, high) = (height(self.from[1]), height(self.to[1]));
+        let part = low + n(numbers.y) * (high - low);
+        let rest = (n(1.0) - part * part).max(n(1e-12));
+        let y = (part * square.sqrt() / rest.sqrt()).max(self.from[1]).min(self.to[1]);
+        Some(per_axis(|axis| x * x_axis[axis] + y * y_axis[axis] + self.plane * z_axis[axis]))
     }
+}
+
+/// Tells whether a number is negative; `None` where that is open.
+fn is_negative<N: Number>(of: N) -> Option<bool> {
+    Some(of.sign()? != N::constant(1.0))
 }
 
 #[cfg(test)]
@@ -149,14 +176,16 @@ mod tests {
     fn a_spherical_rectangle_has_its_solid_angle_and_even_samples() {
         // A face of a cube around the point covers a sixth of all directions.
         let half = [DVec3::X, DVec3::Y];
-        let seen = SphericalRectangle::new(DVec3::NEG_Z, half).expect("a face");
+        let seen = SphericalRectangle::<f64>::new([0.0, 0.0, -1.0], half).expect("a face");
         assert!((seen.solid_angle - 4.0 * PI / 6.0).abs() < 1e-12, "{}", seen.solid_angle);
         // The mean of a direction over it is that of the integral of the cosine: the form factor, times pi.
         let count = 256;
         let mut sum = 0.0;
         for index in 0..count * count {
             let place = |part: i32| (f64::from(part) + 0.5) / f64::from(count);
-            let toward = seen.place(DVec2::new(place(index % count), place(index / count)));
+            let toward = DVec3::from(
+                seen.place(DVec2::new(place(index % count), place(index / count))).expect("a place"),
+            );
             assert!(toward.x.abs() <= 1.0 && toward.y.abs() <= 1.0 && (toward.z + 1.0).abs() < 1e-12);
             sum += -toward.normalize().z;
         }

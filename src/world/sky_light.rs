@@ -1,15 +1,14 @@
 //! Backgrounds that light surfaces.
 
 use crate::background::EnclosedBackground;
-use crate::emitter::{Emitter, Extent, LightSample, by_cosine};
+use crate::emitter::{Emitter, EmitterPoint, EnclosedEmitter, by_cosine};
 use crate::light::Light;
 use crate::material::Rgb;
 use crate::number::Number;
 use crate::sky_map::SkyMap;
 use glam::{DVec2, DVec3};
-use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
-use tabray_exact::scalar::per_axis;
+use tabray_exact::scalar::{constants, dot, per_axis};
 
 /// The light of a background. Directions are chosen by the cosine of the angle at which light arrives. Where the
 /// background has detail, half of them are chosen by its brightness.
@@ -48,38 +47,33 @@ impl Light for SkyLight {
         Some(2.0 * self.background.brightest())
     }
 
-    fn emitter(&self) -> Option<&dyn Emitter> {
+    fn emitter(&self) -> Option<&dyn EnclosedEmitter> {
         Some(self)
     }
 }
 
 impl Emitter for SkyLight {
-    fn sample(&self, _at: DVec3, normal: DVec3, numbers: DVec2) -> Option<LightSample> {
-        let Some(map) = self.map() else {
-            let toward = DVec3::from(by_cosine(normal.to_array(), numbers)?);
-            let cosine = toward.dot(normal);
-            let light = self.background.colour_toward(toward) / cosine;
-            return (cosine > 0.0).then_some(LightSample { toward, distance: f64::INFINITY, light });
-        };
-        // The middle of the range chooses by the cosine, so a single sample is the most even one.
-        let DVec2 { x, y } = numbers;
-        let toward = match x {
-            x if (0.25..0.75).contains(&x) => {
-                by_cosine(normal.to_array(), DVec2::new(2.0 * (x - 0.25), y))?.into()
+    fn sample<N: Number>(&self, _at: [N; 3], normal: [N; 3], numbers: DVec2) -> Option<EmitterPoint<N>> {
+        let (n, map, DVec2 { x, y }) = (N::constant, self.map(), numbers);
+        let toward = match map {
+            None => by_cosine(normal, numbers)?,
+            // The middle of the range chooses by the cosine, so a single sample is the most even one.
+            Some(_) if (0.25..0.75).contains(&x) => by_cosine(normal, DVec2::new(2.0 * (x - 0.25), y))?,
+            Some(map) => {
+                constants(map.direction(DVec2::new(if x < 0.25 { 2.0 * x } else { 2.0 * x - 1.0 }, y)))
             }
-            x => map.direction(DVec2::new(if x < 0.25 { 2.0 * x } else { 2.0 * x - 1.0 }, y)),
         };
-        let cosine = toward.dot(normal);
-        if cosine <= 0.0 {
-            return None;
+        let cosine = dot(toward, normal);
+        // A direction along the surface gives no light.
+        if (n(0.0) - cosine).sign()? == n(1.0) {
+            return Some(EmitterPoint { toward, is_far: true, light: [n(0.0); 3] });
         }
-        let density = 0.5 * cosine + 0.5 * PI * map.density(toward);
-        let light = self.background.colour_toward(toward) / density;
-        Some(LightSample { toward, distance: f64::INFINITY, light })
-    }
-
-    fn extent(&self) -> Extent<'_> {
-        Extent::Sky { background: &*self.background, map: self.map() }
+        let density = match map {
+            None => cosine,
+            Some(map) => n(0.5) * cosine + n(0.5) * N::pi() * map.density(toward),
+        };
+        let light = self.background.colour_in(toward).map(|channel| channel / density);
+        Some(EmitterPoint { toward, is_far: true, light })
     }
 
     /// Mirrors show the background itself.

@@ -5,8 +5,6 @@ use crate::number::Number;
 use crate::parallel;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
-use tabray_exact::interval::Interval;
-use tabray_exact::scalar::Scalar;
 
 /// The largest number of columns, and of rows, of a [`SkyMap`].
 const MAX_CELLS: [u32; 2] = [1024, 512];
@@ -109,25 +107,23 @@ impl SkyMap {
         DVec3::new(flat * sin, height, -flat * cos).normalize()
     }
 
-    /// Returns the density of the directions that are chosen, per unit of solid angle.
-    pub(super) fn density(&self, toward: DVec3) -> f64 {
-        let [around, up] = equirectangular(toward.to_array());
-        let index = |part: f64, count: usize| ((part * count as f64) as usize).min(count - 1);
-        self.density_in(index(up, self.rows), index(around, self.columns))
-    }
-
-    /// Encloses the density at directions that are unit vectors in a box.
-    pub fn density_within(&self, toward: [Interval; 3]) -> Interval {
+    /// Returns the density of the directions that are chosen, per unit of solid angle, or bounds of it at the unit vectors in
+    /// a box.
+    pub(super) fn density<N: Number>(&self, toward: [N; 3]) -> N {
         let [around, up] = equirectangular(toward);
-        let cells = |part: Interval, count: usize| {
-            let places = part * Interval::constant(count as f64);
-            let [first, last] = [places.low, places.high].map(|place| (place as usize).min(count - 1));
-            first..=last
+        let cells = |part: N, count: usize| {
+            let index = |place: f64| ((place * count as f64) as usize).min(count - 1);
+            part.plain().map_or_else(|| part.bounds(), |part| [part; 2]).map(index)
         };
-        let density = |row: usize, column: usize| Interval::constant(self.density_in(row, column));
-        let cells = cells(up, self.rows)
-            .flat_map(|row| cells(around, self.columns).map(move |column| density(row, column)));
-        cells.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
+        let [[low, high], [left, right]] = [cells(up, self.rows), cells(around, self.columns)];
+        if low == high && left == right {
+            return N::constant(self.density_in(low, left));
+        }
+        let cells = (low..=high).flat_map(|row| (left..=right).map(move |column| [row, column]));
+        let (least, most) = cells
+            .map(|[row, column]| self.density_in(row, column))
+            .fold((f64::INFINITY, 0.0), |(least, most), density| (density.min(least), density.max(most)));
+        N::any(least, most)
     }
 
     /// Returns the density in a cell.

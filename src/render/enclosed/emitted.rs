@@ -3,13 +3,13 @@
 use super::light::{LightPoints, power};
 use super::number::Enclosing;
 use super::panes::{Ends, Passes, passed};
-use super::sampled::{self, Points, Round};
+use super::round::Round;
 use super::scene::{Colour, EnclosedScene, Path};
 use super::surface::{HitPoints, is_black};
 use glam::DVec2;
 use tabray_exact::interval::{Float, Interval};
 use tabray_exact::scalar::{dot, per_axis, unit};
-use tabray_world::emitter::{Emitter, Extent};
+use tabray_world::emitter::{EmitterPoint, EnclosedEmitter, Extent};
 use tabray_world::geometry::sight::Line;
 
 /// Encloses the contribution of an extended light to the colour of points; `None` where it is open. `dir` is the unit
@@ -21,7 +21,7 @@ use tabray_world::geometry::sight::Line;
 pub(super) fn contribution<N: Enclosing>(
     scene: &EnclosedScene,
     (index, seen): (usize, LightPoints),
-    emitter: &dyn Emitter,
+    emitter: &dyn EnclosedEmitter,
     surface: &HitPoints<N>,
     dir: [N; 3],
 ) -> Option<Colour<N>> {
@@ -55,19 +55,19 @@ pub(super) fn contribution<N: Enclosing>(
         N::enclosing(Interval::from_f64(Interval { low, high: most }))
     });
     let of = Shining { scene, index, surface, dir, shininess: has_highlight.then_some(shininess) };
-    let extent = emitter.extent();
-    // The samples of a sky include its colours.
-    let sent = if matches!(extent, Extent::Sky { .. }) { [N::constant(1.0); 3] } else { sent };
     let lit = match seen {
-        LightPoints::All => match &extent {
+        LightPoints::All => match emitter.extent() {
             Extent::Panel(panel) => {
-                let points = sampled::at_place(panel, surface.at, [0, 1].map(N::on_light));
-                of.at(&points, &sent).map(|lit| lit.map(N::mean_over_light))
+                let between = per_axis(|axis| N::constant(panel.middle[axis]) - surface.at[axis]);
+                let (toward, solid_angle) = panel.by_area(between, [0, 1].map(N::on_light));
+                let light = sent.map(|sent| solid_angle / N::pi() * sent);
+                let lit = of.at(&EmitterPoint { toward, is_far: false, light });
+                lit.map(|lit| lit.map(N::mean_over_light))
             }
-            extent => Round::seen(extent, surface.at).and_then(|round| of.round(&round, &sent)),
+            extent => Round::seen(&extent, surface.at).and_then(|round| of.round(&round, &sent)),
         },
-        LightPoints::Middle => of.sampled(&extent, DVec2::splat(0.5), &sent),
-        LightPoints::Of(sample) => of.sampled(&extent, sample.on_light(index), &sent),
+        LightPoints::Middle => of.sampled(emitter, DVec2::splat(0.5)),
+        LightPoints::Of(sample) => of.sampled(emitter, sample.on_light(index)),
     };
     let Some(lit) = lit else { return Some(any) };
     Some(per_axis(|channel| {
@@ -89,16 +89,16 @@ struct Shining<'s, N: Enclosing> {
 
 impl<N: Enclosing> Shining<'_, N> {
     /// Encloses the light that a sample adds, given the two numbers that choose its points; `None` where it is open.
-    fn sampled(&self, extent: &Extent, numbers: DVec2, sent: &Colour<N>) -> Option<Colour<N>> {
-        match sampled::chosen(extent, self.surface, numbers)? {
-            Some(points) => self.at(&points, sent),
-            None => Some([N::constant(0.0); 3]),
-        }
+    fn sampled(&self, emitter: &dyn EnclosedEmitter, numbers: DVec2) -> Option<Colour<N>> {
+        self.at(&N::chooses(emitter).choose(self.surface.at, self.surface.normal, numbers)?)
     }
 
-    /// Encloses the contribution of points of the light that send this light; `None` where it is open.
-    fn at(&self, points: &Points<N>, sent: &Colour<N>) -> Option<Colour<N>> {
-        let Points { toward, are_far, light } = points;
+    /// Encloses the contribution of points of the light; `None` where it is open.
+    fn at(&self, points: &EmitterPoint<N>) -> Option<Colour<N>> {
+        let EmitterPoint { toward, is_far, light } = points;
+        if is_black(light) {
+            return Some([N::constant(0.0); 3]);
+        }
         let rise = dot(*toward, self.surface.normal);
         // Light from behind the surface may face only the shading normals.
         let geometric_normal = self.surface.geometric_normal;
@@ -114,8 +114,8 @@ impl<N: Enclosing> Shining<'_, N> {
         if let Some(strength) = self.highlight(*toward) {
             scattered = per_axis(|channel| scattered[channel] + self.surface.specular[channel] * strength);
         }
-        let full = per_axis(|channel| scattered[channel] * (sent[channel] * light[channel]));
-        let end = if *are_far { N::End::INFINITY } else { N::of(1.0) };
+        let full = per_axis(|channel| scattered[channel] * light[channel]);
+        let end = if *is_far { N::End::INFINITY } else { N::of(1.0) };
         self.passes(*toward, Ends::at(end)).lit(self.scene, &full, above)
     }
 

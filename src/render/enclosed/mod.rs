@@ -17,7 +17,7 @@ mod media;
 mod number;
 mod panes;
 mod rays;
-mod sampled;
+mod round;
 mod scene;
 mod surface;
 mod tangents;

@@ -6,6 +6,7 @@ use tabray_exact::scalar::per_axis;
 use tabray_world::certify::{
     FootprintHit, HitEnclosure, Precise, ProofMethods, gradient, gradient_over, shading_normals,
 };
+use tabray_world::emitter::{Chooses, EnclosedEmitter};
 use tabray_world::geometry::sight::Line;
 use tabray_world::number::Number;
 use tabray_world::packets::light::PacketLight;
@@ -68,6 +69,9 @@ pub trait Enclosing: Number + PartialEq {
     /// Encloses what a light sends toward points.
     fn sent(light: &dyn PacketLight, toward: [Self; 3]) -> [Self; 3];
 
+    /// Returns an extended light of any type, to be asked in this number.
+    fn chooses(of: &dyn EnclosedEmitter) -> &dyn Chooses<Self>;
+
     /// Calls `met` with the possible hits with t > 0 of a shape, each with its part of the shape. For each part, these
     /// are the hits up to the first one that every line certainly has. The calls end when `met` returns false. `leaves`
     /// is the part on which the lines' true starts lie, if they lie on the shape.
@@ -124,6 +128,10 @@ impl<F: Precise> Enclosing for Interval<F> {
 
     fn sent(light: &dyn PacketLight, toward: [Self; 3]) -> [Self; 3] {
         F::sends(light).sends(toward)
+    }
+
+    fn chooses(of: &dyn EnclosedEmitter) -> &dyn Chooses<Self> {
+        F::chooses(of)
     }
 
     fn hits(
@@ -207,6 +215,10 @@ impl Enclosing for Affine {
 
     fn sent(light: &dyn PacketLight, toward: [Self; 3]) -> [Self; 3] {
         light.sends(toward)
+    }
+
+    fn chooses(of: &dyn EnclosedEmitter) -> &dyn Chooses<Self> {
+        of
     }
 
     fn hits(

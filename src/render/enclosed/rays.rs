@@ -160,9 +160,7 @@ impl<'s> EnclosingTracer<'s> {
     /// Encloses the colours of rays that hit nothing.
     fn background<N: Enclosing>(&self, ray: &Ray<N>) -> Colour<N> {
         let Some(background) = &self.scene.model.background else { return [N::constant(0.0); 3] };
-        let toward = per_axis(|axis| (ray.path.line.dir[axis] / ray.length).coarse());
-        let seen = background.value.colours_toward(toward);
-        let seen = per_axis(|channel| N::enclosing(Interval::from_f64(seen[channel])));
+        let seen = background.value.colour_in(ray.path.line.dir.map(|along| along / ray.length));
         absorbed(seen, media::between(self.scene, &ray.path, None), None)
     }
 

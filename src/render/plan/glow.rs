@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use std::ops::Range;
-use tabray_world::emitter::LightSample;
+use tabray_world::emitter::{FREE, LightSample};
 use tabray_world::luminous::{AimedPoint, Luminous, chosen};
 use tabray_world::material::{Look, Rgb};
 use tabray_world::scene::model::{Model, Object};
@@ -78,8 +78,7 @@ impl Glow {
         let AimedPoint { toward, distance, density } =
             surface.sample(at, normal, DVec2::new(part, numbers.y))?;
         let density = chance * density;
-        // The surface itself is not in the way.
-        let distance = distance * (1.0 - 1e-9);
+        let distance = FREE * distance;
         Some((LightSample { toward, distance, light: *radiance / (PI * density) }, density))
     }
 

@@ -23,7 +23,7 @@ use crate::plan::lamps::is_aimed_at;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use std::mem::take;
-use tabray_world::emitter::{Emitter, LightSample};
+use tabray_world::emitter::{EnclosedEmitter, LightSample};
 use tabray_world::geometry::aabb::{self, Aabb};
 use tabray_world::interface::Interface;
 use tabray_world::material::Rgb;
@@ -32,7 +32,7 @@ use tabray_world::material::Rgb;
 #[derive(Clone, Copy)]
 enum Target<'t> {
     /// The light of this index.
-    Lamp(usize, &'t dyn Emitter),
+    Lamp(usize, &'t dyn EnclosedEmitter),
     /// What objects emit.
     Glow(&'t Glow),
 }
@@ -48,7 +48,7 @@ impl Target<'_> {
     ) -> Option<(LightSample, f64)> {
         match self {
             Self::Lamp(_, emitter) => {
-                let sample = emitter.sample(at, normal, numbers)?;
+                let sample = emitter.sample_at(at, normal, numbers)?;
                 Some((sample, emitter.density(at, sample.toward, sample.distance)?))
             }
             Self::Glow(glow) => glow.sample((from, at), normal, numbers),

@@ -10,7 +10,7 @@ use super::surface::Surface;
 use crate::observer::{Event, LightOutcome};
 use crate::plan::ShutOut;
 use glam::{DVec2, DVec3};
-use tabray_world::emitter::{Emitter, LightSample};
+use tabray_world::emitter::{EnclosedEmitter, LightSample};
 use tabray_world::geometry::aabb::{self, Aabb};
 use tabray_world::geometry::ray::Side;
 use tabray_world::lamp::Lamp;
@@ -237,7 +237,7 @@ impl Tracer<'_, '_> {
     /// rays.
     pub(super) fn sample_emitter(
         &self,
-        (emitter, index): (&dyn Emitter, usize),
+        (emitter, index): (&dyn EnclosedEmitter, usize),
         group: &RayGroup,
         shading: &ShadingPoints,
         draws: &mut LightDraws,
@@ -250,7 +250,7 @@ impl Tracer<'_, '_> {
         *source = Aabb::EMPTY;
         for lane in 0..shading.points.len() {
             let (at, normal) = (shading.points.get(lane), shading.normals.get(lane));
-            let chosen = emitter.sample(at, normal, numbers(lane));
+            let chosen = emitter.sample_at(at, normal, numbers(lane));
             let chosen = chosen.filter(|sample| sample.toward.dot(normal) > 0.0);
             let none = LightSample { toward: normal, distance: 0.0, light: Rgb::ZERO };
             let LightSample { toward, distance, light } = chosen.unwrap_or(none);

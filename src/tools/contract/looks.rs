@@ -13,7 +13,7 @@ use tabray_core::simd::cpu::Cpu;
 use tabray_core::simd::soa::{LANES, Vectors};
 use tabray_core::world::background::EnclosedBackground;
 use tabray_core::world::body::ShaderFactory;
-use tabray_core::world::emitter::{Emitter, LightSample};
+use tabray_core::world::emitter::{EnclosedEmitter, LightSample};
 use tabray_core::world::hittable::Curvature;
 use tabray_core::world::interface::Crossing;
 use tabray_core::world::material::{Look, Material, Reflectivity, Rgb};
@@ -236,9 +236,14 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
 }
 
 /// Checks the samples of an extended light, as a place sees them.
-fn samples(light: &dyn PacketLight, emitter: &dyn Emitter, at: DVec3, draw: &mut Draw) -> Result<(), Fault> {
+fn samples(
+    light: &dyn PacketLight,
+    emitter: &dyn EnclosedEmitter,
+    at: DVec3,
+    draw: &mut Draw,
+) -> Result<(), Fault> {
     let (normal, numbers) = (draw.direction(), DVec2::new(draw.part(), draw.part()));
-    let Some(sample) = emitter.sample(at, normal, numbers) else { return Ok(()) };
+    let Some(sample) = emitter.sample_at(at, normal, numbers) else { return Ok(()) };
     let LightSample { toward, distance, light: sent } = sample;
     let cosine = if emitter.has_highlights() { 1.0 } else { toward.dot(normal).max(0.0) };
     let is_bounded =

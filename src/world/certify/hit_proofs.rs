@@ -9,6 +9,7 @@ use super::along::{COARSE, FINE, first_along};
 use super::equation::{AnyNumber, Equation, HitEnclosure, Values};
 use super::footprint::OverFootprint;
 use super::search;
+use crate::emitter::{Chooses, EnclosedEmitter};
 use crate::geometry::sight::Line;
 use crate::packets::light::{PacketLight, Sends};
 use crate::shader::{EnclosedShader, Looks};
@@ -187,6 +188,9 @@ pub trait Precise: Float {
     /// Returns a light of any type, to be asked in intervals of this precision.
     fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>>;
 
+    /// Returns an extended light of any type, to be asked in intervals of this precision.
+    fn chooses(of: &dyn EnclosedEmitter) -> &dyn Chooses<Interval<Self>>;
+
     /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
     fn narrow(of: Wide) -> Interval<Self>;
 
@@ -217,6 +221,10 @@ impl Precise for f64 {
     }
 
     fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>> {
+        of
+    }
+
+    fn chooses(of: &dyn EnclosedEmitter) -> &dyn Chooses<Interval<Self>> {
         of
     }
 
@@ -254,6 +262,10 @@ impl Precise for Fraction {
     }
 
     fn sends(of: &dyn PacketLight) -> &dyn Sends<Interval<Self>> {
+        of
+    }
+
+    fn chooses(of: &dyn EnclosedEmitter) -> &dyn Chooses<Interval<Self>> {
         of
     }
 
