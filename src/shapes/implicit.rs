@@ -35,7 +35,7 @@ use tabray_world::geometry::frame::Frame;
 use tabray_world::geometry::ray::{Bracket, MISS, Ray, RayBall, RayRange, Side};
 use tabray_world::geometry::ray_packet::RayPacket;
 use tabray_world::geometry::sight::Line;
-use tabray_world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Searched, Shape};
+use tabray_world::hittable::{Bracketed, Certified, Curvature, Facts, Hittable, Shape};
 use tabray_world::luminous::Luminous;
 use tabray_world::packets::shape::by_distance;
 
@@ -64,7 +64,7 @@ pub(super) fn body(formula: impl Implicit + 'static, frame: Frame) -> Body {
     let (recorded, along_lines) = (OnceLock::new(), own);
     let shape =
         ImplicitShape { formula, recorded, along_lines, degree, frame, low, high, parts, most_pieces, nodes };
-    Body::plain(Shape::new(shape).bracketed().searched())
+    Body::plain(Shape::new(shape).bracketed().certified())
 }
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {
@@ -155,10 +155,8 @@ impl<T: Implicit> Certified for ImplicitShape<T> {
         let amid = self.formula.value([around(at.x), Interval::constant(0.5 * height), around(at.z)]);
         (is_alone && amid.high < 0.0).then(|| self.frame.facet(end, is_upward))
     }
-}
 
-impl<T: Implicit> Searched for ImplicitShape<T> {
-    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
         let line = FormulaOnRay::new(self, ray);
         let (Stretch { outer, .. }, mut left) = (line.stretch(), *range);
         for _ in 0..MAX_CUT {
@@ -171,10 +169,10 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
                     left.origin_side = Some(if rises { Side::Outside } else { Side::Inside });
                     left.near = line.closest + root;
                 }
-                root => return line.distance(root, range),
+                root => return Some(line.distance(root, range)),
             }
         }
-        MISS
+        Some(MISS)
     }
 }
 

@@ -201,12 +201,12 @@ pub trait Certified: Hittable + Equation {
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         coincidence::distance(self, ray, distance)
     }
-}
 
-/// A shape whose hits are the roots of a function along the ray, which other root-finding methods can find as well.
-pub trait Searched: Certified {
-    /// Returns the distance by another root-finding method, for comparison.
-    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64;
+    /// Returns the distance by another root-finding method, for comparison; `None` where the shape's hits are not the roots
+    /// of a function along the ray, or are found in closed form.
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
 }
 
 /// The properties of a shape that depend on no point and no ray.
@@ -350,13 +350,6 @@ impl<T: Certified, S> Shape<T, S> {
     }
 }
 
-impl<T: Searched, S> Shape<T, S> {
-    /// Proves hits by the shape's equation, and finds them by other methods for comparison.
-    pub fn searched(self) -> Shape<T, S, ByRoots> {
-        self.by()
-    }
-}
-
 impl<T: Hittable + Equation> Shape<T> {
     /// Finds hits by a formula of the notes, which computes a distance as quickly as a bracket. The distance is not
     /// refined, even where the shape coincides with another surface. The equation states the surface that the notes
@@ -375,7 +368,5 @@ pub struct ByBracket;
 pub struct Unproven;
 /// Marks a shape whose hits are proven by its equation.
 pub struct ByEquation;
-/// Marks a shape whose hits are proven by its equation, and can be found by other root-finding methods.
-pub struct ByRoots;
 /// Marks a shape whose hits are found by a formula of the notes, with an equation of the surface that they mean.
 pub struct ByFormula;

@@ -67,7 +67,7 @@ pub use bent::{Bend, Bent};
 pub use body::{AnyLight, AnyShader, Body, NamedBody, Part, ShaderFactory, Solid, Warning};
 pub use camera::{Camera, Origins, Projected};
 pub use emitter::{Emitter, EmitterPoint, EnclosedEmitter, Extent};
-pub use hittable::{Bracketed, Certified, Facts, Hittable, Searched, Shape, Sides};
+pub use hittable::{Bracketed, Certified, Facts, Hittable, Shape, Sides};
 pub use interface::{AnyInterface, Crossing, Interface, Law, Medium};
 pub use light::Light;
 pub use material::{Material, Rgb};

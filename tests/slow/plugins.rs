@@ -561,10 +561,9 @@ const DENTED: &str = "//! A ball, in whose middle the tracer sees a hole.
 
 use tabray::exact::roots::Method;
 use tabray::prelude::*;
-use tabray::world::hittable::Searched;
 
 inventory::submit! {
-    Entity::shape(\"dented\", \"a ball with a fault\", &[], |_| Ok(Body::plain(Shape::new(Dented).searched())))
+    Entity::shape(\"dented\", \"a ball with a fault\", &[], |_| Ok(Body::plain(Shape::new(Dented).certified())))
 }
 
 struct Dented;
@@ -594,11 +593,9 @@ impl Equation for Dented {
     }
 }
 
-impl Certified for Dented {}
-
-impl Searched for Dented {
-    fn distance_by(&self, _method: Method, ray: &Ray, range: &RayRange) -> f64 {
-        self.distance(ray, range)
+impl Certified for Dented {
+    fn distance_by(&self, _method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
+        Some(self.distance(ray, range))
     }
 }
 ";

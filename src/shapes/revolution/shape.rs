@@ -123,15 +123,13 @@ impl Certified for InFrame<Revolution> {
         let moved = 8.0 * f64::EPSILON * (at - self.frame.origin).abs().max_element();
         self.surface.is_on_surface(self.frame.point(at), error + moved)
     }
-}
 
-queries_by_equation!(
-    [] InFrame<Revolution>,
-    |self| self,
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
         Some(self.surface.first_hit_by(method, &self.frame, ray, range))
     }
-);
+}
+
+queries_by_equation!([] InFrame<Revolution>, |self| self);
 
 impl PacketIntersect for InFrame<Revolution> {
     fn brackets(&self, cpu: Cpu, rays: RayPacket, ends: &[f64], (near, far): (&mut [f64], &mut [f64])) {

@@ -5,9 +5,7 @@ use crate::coincidence::ROUNDING;
 use crate::geometry::facet::Facet;
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
-use crate::hittable::{
-    ByEquation, ByFormula, ByRoots, Certified, Hittable, Searched, Shape, SurfaceHit, Unproven,
-};
+use crate::hittable::{ByEquation, ByFormula, Certified, Hittable, Shape, SurfaceHit, Unproven};
 use glam::DVec3;
 use tabray_exact::double_double::DoubleDouble;
 use tabray_exact::interval::{Float, Fraction};
@@ -123,10 +121,10 @@ impl<T: Hittable + Equation, S> HitQueries for Shape<T, S, ByFormula> {
 }
 
 /// Implements [`HitQueries`] for a type by the equation of a shape: the type, between its parameters and the shape as a
-/// place in `self`, and what is known more.
+/// place in `self`.
 #[macro_export]
 macro_rules! queries_by_equation {
-    ([$($parameters:tt)*] $Type:ty, |$self:ident| $shape:expr, $($more:tt)*) => {
+    ([$($parameters:tt)*] $Type:ty, |$self:ident| $shape:expr) => {
         impl<$($parameters)*> $crate::packets::shape::HitQueries for $Type {
             fn is_on_surface(&$self, at: $crate::glam::DVec3, error: f64) -> bool {
                 $crate::hittable::Certified::is_on_surface($shape, at, error)
@@ -172,21 +170,21 @@ macro_rules! queries_by_equation {
                 Some($shape)
             }
 
-            $($more)*
+            fn distance_by(
+                &$self,
+                method: $crate::exact::roots::Method,
+                ray: &$crate::geometry::ray::Ray,
+                range: &$crate::geometry::ray::RayRange,
+            ) -> Option<f64> {
+                $crate::hittable::Certified::distance_by($shape, method, ray, range)
+            }
         }
     };
 }
 
 pub use queries_by_equation;
 
-queries_by_equation!([T: Certified, S] Shape<T, S, ByEquation>, |self| &self.shape,);
-queries_by_equation!(
-    [T: Searched, S] Shape<T, S, ByRoots>,
-    |self| &self.shape,
-    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
-        Some(self.shape.distance_by(method, ray, range))
-    }
-);
+queries_by_equation!([T: Certified, S] Shape<T, S, ByEquation>, |self| &self.shape);
 
 /// Passes on the assumptions of proofs by a shape's equation.
 pub fn assumed(shape: &impl Hittable, of: &'static str, each: &mut dyn FnMut(&'static str, Premise)) {
