@@ -119,6 +119,7 @@ fn answers_that_are_no_starts_are_refused_and_harm_nothing() {
     write("other.jsonl", &format!("{hit}\n{}\n", hit.replace("\"number\":0", "\"number\":7")));
     write("no.jsonl", "{\"x\": 1}\n");
     write("no.csv", "a,b\n1,2\n");
+    write("late.csv", "\n\na,b\n1,2\n");
     fs::write(folder.path().join("cut.npy"), b"\x93NUMPY\x01\x00").expect("a file");
     for (answers, says) in [
         ("a.jsonl", "`rays.txt`, line 2: the answer that it leaves has no proven hit"),
@@ -127,6 +128,7 @@ fn answers_that_are_no_starts_are_refused_and_harm_nothing() {
         ("other.jsonl", "line 2: the scene has no object 7"),
         ("no.jsonl", "line 1: the answer that it leaves, line 1: it is no answer of `tabray hits`"),
         ("no.csv", "`no.csv`, line 1: the first line lacks `number` or `surface`"),
+        ("late.csv", "`late.csv`, line 3: the first line lacks `number` or `surface`"),
         ("cut.npy", "`cut.npy`, row 1: it is not a NumPy array"),
         ("none.csv", "cannot read `none.csv`"),
     ] {

@@ -259,3 +259,19 @@ fn a_camera_decides_its_rays_past_poles_and_where_planes_meet() {
         }
     }
 }
+
+/// The ray leaves the box 2e-15 before the formula is 0.
+#[test]
+fn a_root_right_beyond_the_box_is_no_hit() {
+    let model = model(
+        "camera eye { pixeldim 1 1 worlddim 18.028758263580333 5.527791219658041
+            viewpoint 7.827668579316519 -6.169016004237104 3.0598036802932627 }
+        material gold { ambient 1 1 0 }
+        implicit it {
+            material gold formula \"y - exp(-1.38*(x^2 + z^2))*cos(3*x)\"
+            center 9.773727013351113 8.741966451444425 -0.04903968653374724
+            box -2 -2 -2 2 2 2
+        }",
+    );
+    assert_eq!(verify::pixel(&Plan::new(&model), 0, 0).verdict, verify::Verdict::Proven);
+}

@@ -51,21 +51,21 @@ impl<'r> StartReader<'r> {
     /// # Errors
     /// Returns an error where the input cannot be read, or where its header is not that of answers.
     pub fn new(mut input: Input<'r>) -> Result<Self, BadRay> {
-        let bad = |unit, message| BadRay { number: 1, unit, message, is_last: true };
-        let head = std::io::BufRead::fill_buf(&mut input).map_err(|error| bad("line", reason(&error)))?;
+        let bad = |number, unit, message| BadRay { number, unit, message, is_last: true };
+        let head = std::io::BufRead::fill_buf(&mut input).map_err(|error| bad(1, "line", reason(&error)))?;
         let mut number = 0;
         let form = if head.starts_with(MAGIC) {
-            records(&mut input).map_err(|message| bad("row", message))?
+            records(&mut input).map_err(|message| bad(1, "row", message))?
         } else if head.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{') {
             Form::Json
         } else {
             let names = next_line(&mut input, &mut number, false).transpose();
-            let names = names.map_err(|(message, _)| bad("line", message))?.unwrap_or_default();
+            let names = names.map_err(|(message, _)| bad(number, "line", message))?.unwrap_or_default();
             let names = fields(&names);
             let columns = IN_TEXT.map(|name| names.iter().position(|known| known == name));
             let [Some(object), Some(surface)] = columns else {
                 let message = "the first line lacks `number` or `surface`: give what `tabray hits` wrote";
-                return Err(bad("line", message.to_owned()));
+                return Err(bad(number, "line", message.to_owned()));
             };
             Form::Csv([object, surface])
         };

@@ -54,7 +54,7 @@ fn visit_hits<C: Coefficient>(
     visit: &mut dyn FnMut(HitEnclosure<C::End>) -> bool,
 ) -> Option<()> {
     let (along_lines, zero) = (shape.polynomial()?, C::End::of(0.0));
-    let [low, high] = shape.extent();
+    let [low, high] = shape.widened_extent();
     let part = line.clip(low, high);
     trail.clip(part);
     let Some((mut from, to)) = part else { return Some(()) };
@@ -124,7 +124,7 @@ pub(super) fn exact_hit(shape: &dyn Values<Wide>, sight: &Sight) -> Option<HitEn
         Some(poles) => Some(poles.along_lines().exactly(&origin, &dir)?),
         None => None,
     };
-    let [low, high] = shape.extent();
+    let [low, high] = shape.widened_extent();
     let (part, mut trail) = (near.clip(low, high), Trail::default());
     trail.clip(part);
     let Some((from, to)) = part else {

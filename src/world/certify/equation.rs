@@ -111,8 +111,15 @@ pub trait Values<N: Scalar> {
     /// Returns [`Equation::condition`].
     fn condition(&self, at: [N; 3]) -> N;
 
-    /// Returns [`Equation::extent`], widened by the rounding of its numbers.
+    /// Returns [`Equation::extent`].
     fn extent(&self) -> [DVec3; 2];
+
+    /// Returns [`Equation::extent`], widened by the rounding of its numbers.
+    fn widened_extent(&self) -> [DVec3; 2] {
+        let [low, high] = self.extent();
+        let Aabb { low, high } = Aabb { low, high }.with_slack(0.0);
+        [low, high]
+    }
 }
 
 impl<E: Equation, N: Scalar> Values<N> for E {
@@ -157,9 +164,7 @@ impl<E: Equation, N: Scalar> Values<N> for E {
     }
 
     fn extent(&self) -> [DVec3; 2] {
-        let [low, high] = Equation::extent(self);
-        let Aabb { low, high } = Aabb { low, high }.with_slack(0.0);
-        [low, high]
+        Equation::extent(self)
     }
 }
 

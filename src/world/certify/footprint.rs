@@ -216,7 +216,7 @@ fn farther_than(a: Affine, b: Affine) -> f64 {
 /// Finds the hits of any surface, by splitting the lines until each piece certainly has no root, or exactly one on
 /// each line.
 fn search(shape: &dyn Values<Affine>, line: &Line<Affine>, leaves: bool, met: &mut dyn FnMut(FootprintHit)) {
-    let [low, high] = shape.extent();
+    let [low, high] = shape.widened_extent();
     let coarse = coarse(line);
     let Some((mut from, to)) = coarse.clip(low, high) else { return };
     if !to.is_finite() {

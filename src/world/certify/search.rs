@@ -144,7 +144,7 @@ fn unchecked<F: Float>(
     let near = Line { origin: line.at(base), dir: line.dir };
     // Where rounding moves the line by more than the shape's size, a hit cannot be proven, and a miss is proven at once
     // or not at all.
-    let [low, high] = shape.extent();
+    let [low, high] = shape.widened_extent();
     let is_lost = (0..3).any(|axis| near.origin[axis].width() > F::of(high[axis] - low[axis]));
     if is_lost {
         *pieces = FEW_PIECES.min(*pieces);
@@ -257,6 +257,6 @@ fn cut<F: Float>(low: F, high: F) -> [(F, F); 2] {
 
 /// Clips a line to the extent of a shape, from t = 0 on.
 fn clipped<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>) -> Option<(F, F)> {
-    let [low, high] = shape.extent();
+    let [low, high] = shape.widened_extent();
     line.clip(low, high)
 }

@@ -64,7 +64,7 @@ fn line<F: Float>(origin: [f64; 3], dir: [f64; 3]) -> Line<Interval<F>> {
 /// Returns what a search notes that clips a line rightly, and cuts it at these places.
 fn trail<F: Float>(surface: &Surface, line: &Line<Interval<F>>, places: &[f64]) -> Trail {
     let mut trail = Trail { places: places.to_vec(), ..Trail::default() };
-    let [low, high] = Values::<Interval<F>>::extent(surface);
+    let [low, high] = Values::<Interval<F>>::widened_extent(surface);
     trail.clip(line.clip(low, high));
     trail
 }
@@ -108,6 +108,14 @@ fn what_is_true_passes() {
     ] {
         assert_eq!(passes(text, at, claimed), [true; 2], "{text} at {at:?}: {claimed:?}");
     }
+}
+
+/// A search looks beyond the box by more than its rounding.
+#[test]
+fn a_root_right_beyond_the_box_contradicts_no_miss() {
+    let (surface, line) = (surface("z - 2 - 1e-12"), line::<f64>([0.1, 0.2, -3.0], [0.0, 0.0, 1.0]));
+    let trail = trail(&surface, &line, &[1.5, 5.0 + 1.8e-12]);
+    assert_eq!(first(&surface, &line, HitEnclosure::Misses, &trail), HitEnclosure::Misses);
 }
 
 /// Outside of a part in the middle, Steiner's surface is the axes alone, and the formula touches 0 there. The place of the
