@@ -91,6 +91,23 @@ pub fn facet<N: Number>(normal: [N; 3], toward: [N; 3], width: f64, numbers: DVe
 mod tests {
     use super::*;
     use glam::DVec3;
+    use tabray_exact::interval::Interval;
+    use tabray_exact::scalar::Scalar;
+
+    /// Enclosing numbers know one 0, and proofs are about the samples of pictures.
+    #[test]
+    fn directions_around_a_negative_zero_are_those_around_zero() {
+        let chosen = |axis: [f64; 3]| in_cone(axis, 0.5, DVec2::new(0.3, 0.9)).expect("a direction");
+        let enclosed = |axis: [f64; 3]| {
+            let axis = axis.map(Interval::<f64>::constant);
+            in_cone(axis, Interval::constant(0.5), DVec2::new(0.3, 0.9)).expect("a direction")
+        };
+        for axis in [[0.6, -0.8, -0.0], [0.6, -0.8, 0.0], [-0.0, 1.0, -0.0], [0.0, -0.6, -0.8]] {
+            for (one, within) in chosen(axis).into_iter().zip(enclosed(axis)) {
+                assert!((one - within.middle()).abs() < 1e-15, "{axis:?}: {one} is not in {within:?}");
+            }
+        }
+    }
 
     #[test]
     fn directions_are_even_within_a_cone_and_go_by_the_cosine() {

@@ -181,9 +181,10 @@ impl Number for f64 {
         unit(vector)
     }
 
+    /// Adding 0 turns -0 into 0, which enclosing numbers do not tell from it.
     #[inline(always)]
     fn sign(self) -> Option<Self> {
-        Some(self.signum())
+        Some((self + 0.0).signum())
     }
 
     fn looks(of: &dyn EnclosedShader) -> &dyn Looks<Self> {
