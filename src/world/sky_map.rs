@@ -112,8 +112,9 @@ impl SkyMap {
     pub(super) fn density<N: Number>(&self, toward: [N; 3]) -> N {
         let [around, up] = equirectangular(toward);
         let cells = |part: N, count: usize| {
-            let index = |place: f64| ((place * count as f64) as usize).min(count - 1);
-            part.plain().map_or_else(|| part.bounds(), |part| [part; 2]).map(index)
+            let place = part * N::constant(count as f64);
+            let bounds = place.plain().map_or_else(|| place.bounds(), |place| [place; 2]);
+            bounds.map(|place| (place as usize).min(count - 1))
         };
         let [[low, high], [left, right]] = [cells(up, self.rows), cells(around, self.columns)];
         if low == high && left == right {
